@@ -70,8 +70,8 @@ SAFETY = (
 ROLES = (
     ("joint targets", r"send_(angles|radians)", r"Moves all \w+ joints( of an arm)? to angles"),
     ("joint target", r"send_angle|jog_absolute", r"(Moves|Turns) one joint to an angle"),
-    ("coordinate targets", r"send_coords", r"Moves the end to a position and orientation"),
-    ("coordinate target", r"send_coord", r"Moves the end so that one coordinate"),
+    ("coordinate targets", r"send_coords", r"Moves the end of the arm to a position"),
+    ("coordinate target", r"send_coord", r"Moves the end of the arm so that one coordinate"),
     ("joint target", r"set_joint_angle", r"Moves one joint to an angle"),
     ("reached", r"is_in_position(_coords)?", r"Reports whether the arm is at a target"),
     ("motion ended", r"motion_ended", r"A motion has ended"),

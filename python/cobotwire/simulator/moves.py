@@ -178,7 +178,7 @@ def _axis(arm: ArmState, number: int) -> int:
 
 
 def _is_straight(arm: ArmState, command: Command, fields: Fields) -> bool:
-    """Return whether the end moves on a straight line: the argument or the setting chooses."""
+    """Return whether the arm moves on a straight line: the argument or the setting chooses."""
     for name, found in named_fields(command.request).items():
         labels = dict(zip(found[0].labels, found[0].choices))
         if LINEAR in labels and fields.get(name) is not None:

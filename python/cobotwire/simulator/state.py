@@ -103,7 +103,7 @@ class ArmState:
 
     @property
     def moves_straight(self) -> bool:
-        """Whether the end moves on a straight line if the command does not choose."""
+        """Whether the arm moves on a straight line if the command does not choose."""
         return bool(self.kept.get("movement_type", 0))
 
     @property

@@ -118,7 +118,7 @@ def numbers_of(table: Table, role: Role) -> tuple[Number, ...]:
 def _end_of(
     table: Table, joints: Command
 ) -> tuple[Command, Callable[[Sequence[float]], Pose]] | None:
-    """Return the query for the pose of the end of the arm, and the function that turns its result into a pose.
+    """Return a query, and the function that turns its result into the pose of the end of the arm.
 
     Coordinates from the arm respect its tool and its frame. If an edition reports none, the
     geometry gives the pose.

@@ -35,7 +35,7 @@ class Input:
 
     @property
     def robot(self) -> str:
-        """The name of its robot: from a folder ``robot=NAME``, else the input without extensions."""
+        """The name of its robot: of a folder ``robot=NAME``, or else of the input."""
         url = self.url.replace(os.sep, "/")
         if found := _HIVE_ROBOT.search(url):
             return found[1]

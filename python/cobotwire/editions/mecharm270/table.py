@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="144c388e")
+TABLE = load_table(__package__, checksum="3ca3eb9a")

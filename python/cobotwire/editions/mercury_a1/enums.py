@@ -36,9 +36,9 @@ class ErrorKind(IntEnum):
     JOINT_READ = 2
     """Nothing was read from the joint."""
     END_SEND = 3
-    """Nothing could be sent to the end."""
+    """Nothing could be sent to the end of the arm."""
     END_READ = 4
-    """Nothing was read from the end."""
+    """Nothing was read from the end of the arm."""
 
 
 class ControlMode(IntEnum):
@@ -69,12 +69,12 @@ class TargetKind(IntEnum):
 
 
 class Planned(IntEnum):
-    """What a speed or an acceleration belongs to."""
+    """What a speed or an acceleration applies to."""
 
     ANGLES = 0
     """Joints, in degrees."""
     COORDS = 1
-    """The end, in millimetres."""
+    """The end of the arm, in millimetres."""
 
 
 class FusionParameter(IntEnum):
@@ -85,28 +85,28 @@ class FusionParameter(IntEnum):
     JOINT_ACCELERATION = 2
     """The acceleration of joints."""
     END_SPEED = 3
-    """The speed of the end."""
+    """The speed of the end of the arm."""
     END_ACCELERATION = 4
-    """The acceleration of the end."""
+    """The acceleration of the end of the arm."""
 
 
 class FusionSetting(IntEnum):
-    """A limit of blended motions, or the usual values of all."""
+    """A limit of blended motions, or the initial values of all limits."""
 
     USUAL = 0
-    """All limits as they were at first."""
+    """All limits at their initial values."""
     JOINT_SPEED = 1
     """The speed of joints."""
     JOINT_ACCELERATION = 2
     """The acceleration of joints."""
     END_SPEED = 3
-    """The speed of the end."""
+    """The speed of the end of the arm."""
     END_ACCELERATION = 4
-    """The acceleration of the end."""
+    """The acceleration of the end of the arm."""
 
 
 class MovementType(IntEnum):
-    """Along which path the end moves."""
+    """Along which path the end of the arm moves."""
 
     JOINTS = 0
     """The joints turn evenly (moveJ)."""
@@ -138,7 +138,7 @@ class Axis(IntEnum):
 
 
 class RotationAxis(IntEnum):
-    """A fixed axis about which the end turns."""
+    """A fixed axis about which the end of the arm turns."""
 
     RX = 1
     """About x."""
@@ -169,16 +169,16 @@ class Arc(IntEnum):
 
 
 class ReferenceFrame(IntEnum):
-    """In which frame coordinates are."""
+    """The frame in which coordinates are given."""
 
     BASE = 0
-    """That of the base."""
+    """The frame of the base."""
     WORLD = 1
-    """That of the world."""
+    """The frame of the world."""
 
 
 class EndType(IntEnum):
-    """What coordinates are about."""
+    """The point that coordinates describe."""
 
     FLANGE = 0
     """The flange."""
@@ -190,9 +190,9 @@ class FifoContent(IntEnum):
     """Whether points are recorded."""
 
     EMPTY = 0
-    """None."""
+    """No point is recorded."""
     FILLED = 1
-    """At least one."""
+    """At least one point is recorded."""
 
 
 class GripperState(IntEnum):

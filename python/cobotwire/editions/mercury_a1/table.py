@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="3c689af3")
+TABLE = load_table(__package__, checksum="505fb711")

@@ -21,7 +21,7 @@ class Angles(NamedTuple):
 
 
 class Coords(NamedTuple):
-    """Position and orientation of the end.
+    """Position and orientation of the end of the arm.
 
     Attributes:
         x, y, z: Position along an axis. In millimetres.
@@ -85,10 +85,10 @@ class MotorErrors(NamedTuple):
 
 
 class JointPercents(NamedTuple):
-    """A share for each of the seven joints, base first.
+    """A percentage for each of the seven joints, base first.
 
     Attributes:
-        j1, j2, j3, j4, j5, j6, j7: A share of a joint. In percent.
+        j1, j2, j3, j4, j5, j6, j7: A percentage for one joint. In percent.
     """
 
     j1: int
@@ -133,7 +133,7 @@ class MotorCurrents(NamedTuple):
 
 
 class PositionPairs(NamedTuple):
-    """For each joint, base first: where it was sent, and where it is.
+    """For each joint, base first: its target and its position.
 
     Attributes:
         j1_sent, j1_measured, j2_sent, j2_measured, j3_sent, j3_measured, j4_sent, j4_measured,
@@ -220,7 +220,7 @@ class GetQuickMoveInfoResult(NamedTuple):
     angles: Angles
     """The seven joint angles, base first."""
     coords: Coords
-    """Position and orientation of the end."""
+    """Position and orientation of the end of the arm."""
     further: FurtherBytes
     """Eight bytes that no source explains."""
 

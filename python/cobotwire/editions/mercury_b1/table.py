@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="2ba5497c")
+TABLE = load_table(__package__, checksum="bccb5d20")

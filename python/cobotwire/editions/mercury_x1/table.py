@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="72829b8d")
+TABLE = load_table(__package__, checksum="80209bab")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="090c4b5c")
+TABLE = load_table(__package__, checksum="68b4f591")

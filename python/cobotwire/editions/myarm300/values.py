@@ -146,4 +146,4 @@ class GetAnglesCoordsResult(NamedTuple):
     angles: Angles
     """The seven joint angles, base first."""
     coords: Coords
-    """Position and orientation of the end."""
+    """Position and orientation of the end of the arm."""

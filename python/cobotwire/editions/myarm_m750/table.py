@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="e83e508e")
+TABLE = load_table(__package__, checksum="09f7b632")

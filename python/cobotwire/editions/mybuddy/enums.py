@@ -16,12 +16,12 @@ from cobotwire.editions.mycobot.enums import TravelDirection as TravelDirection
 
 
 class MovementType(IntEnum):
-    """The path of the end to a coordinate target."""
+    """The path of the end of the arm to a coordinate target."""
 
     ANGULAR = 0
     """Each joint takes its shortest path."""
     LINEAR = 1
-    """The end moves along a straight line."""
+    """The end of the arm moves along a straight line."""
 
 
 class ArmSide(IntEnum):

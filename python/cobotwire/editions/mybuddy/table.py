@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="3b567a8f")
+TABLE = load_table(__package__, checksum="e45fcfca")

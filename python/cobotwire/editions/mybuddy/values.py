@@ -7,7 +7,7 @@ from cobotwire.editions.mycobot.values import Angles as Angles
 
 
 class Coords(NamedTuple):
-    """Position and orientation of the end.
+    """Position and orientation of the end of the arm.
 
     Attributes:
         x, y, z: A position along an axis. In millimetres.
@@ -152,6 +152,6 @@ class GetBaseCoordsResult(NamedTuple):
     """The result of get_base_coords."""
 
     left: Coords
-    """Position and orientation of the left arm's end."""
+    """Position and orientation of the end of the left arm."""
     right: Coords
-    """Position and orientation of the right arm's end."""
+    """Position and orientation of the end of the right arm."""

@@ -36,7 +36,7 @@ class MoveMode(IntEnum):
     ANGULAR = 0
     """Each joint takes its shortest path."""
     LINEAR = 1
-    """The end moves along a straight line."""
+    """The end of the arm moves along a straight line."""
     UNEXPLAINED = 2
     """Other clients send this mode; no source says what it means."""
 

@@ -20,7 +20,7 @@ class Angles(NamedTuple):
 
 
 class Coords(NamedTuple):
-    """Position and orientation of the end.
+    """Position and orientation of the end of the arm.
 
     Attributes:
         x, y, z: A position along an axis. In millimetres.

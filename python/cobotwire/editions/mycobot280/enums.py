@@ -36,7 +36,7 @@ class GripperState(IntEnum):
 
 
 class RpyAxis(IntEnum):
-    """An axis to turn the end about."""
+    """An axis to turn the end of the arm about."""
 
     ROLL = 1
     """Roll, about x."""
@@ -52,7 +52,7 @@ class MovementType(IntEnum):
     ANGULAR = 0
     """Each joint takes its shortest path."""
     LINEAR = 1
-    """The end moves along a straight line."""
+    """The end of the arm moves along a straight line."""
 
 
 class ServoDataMode(IntEnum):

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="7617fc2c")
+TABLE = load_table(__package__, checksum="188000bc")

@@ -198,4 +198,4 @@ class GetAnglesCoordsResult(NamedTuple):
     angles: Angles
     """The six joint angles, base first."""
     coords: Coords
-    """Position and orientation of the end."""
+    """Position and orientation of the end of the arm."""

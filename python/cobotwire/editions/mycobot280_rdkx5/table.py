@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="8a05b82e")
+TABLE = load_table(__package__, checksum="eab08b44")

@@ -40,7 +40,7 @@ class GripperMode(IntEnum):
     TRANSPARENT = 0
     """The serial line is forwarded."""
     PORT = 1
-    """Pins of the end control it."""
+    """Pins at the end of the arm control it."""
 
 
 class GripperStatus(IntEnum):

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="5c57fbed")
+TABLE = load_table(__package__, checksum="058d5898")

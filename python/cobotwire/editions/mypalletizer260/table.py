@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="d2baf7e6")
+TABLE = load_table(__package__, checksum="1c40ec6a")

@@ -20,7 +20,7 @@ class Angles(NamedTuple):
 
 
 class Coords(NamedTuple):
-    """Position of the end, and its rotation about the vertical axis.
+    """Position of the end of the arm, and its rotation about the vertical axis.
 
     Attributes:
         x, y, z: A position along an axis. In millimetres.

@@ -24,9 +24,9 @@ from cobotwire.editions.mercury_a1.enums import TargetKind as TargetKind
 
 
 class PosSwitch(IntEnum):
-    """Whether a motion is waited for."""
+    """Whether the arm reports the end of each motion."""
 
     ASYNCHRONOUS = 0
-    """Requests are not waited for."""
+    """The arm does not report the end of motions."""
     SYNCHRONOUS = 1
     """The arm reports the end of each motion."""

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="ceed0508")
+TABLE = load_table(__package__, checksum="b1c00ffc")

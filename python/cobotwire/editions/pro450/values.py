@@ -69,10 +69,10 @@ class MotorErrors(NamedTuple):
 
 
 class JointPercents(NamedTuple):
-    """A share for each of the six joints, base first.
+    """A percentage for each of the six joints, base first.
 
     Attributes:
-        j1, j2, j3, j4, j5, j6: A share of a joint. In percent.
+        j1, j2, j3, j4, j5, j6: A percentage for one joint. In percent.
     """
 
     j1: int
@@ -132,17 +132,17 @@ class JointCompensations(NamedTuple):
     """For each joint, base first: how much friction is compensated, and whether it is damped.
 
     Attributes:
-        j1: A share of a joint. In percent.
+        j1: A percentage for one joint. In percent.
         j1_damping: 1 if the joint is damped, else 0.
-        j2: A share of a joint. In percent.
+        j2: A percentage for one joint. In percent.
         j2_damping: 1 if the joint is damped, else 0.
-        j3: A share of a joint. In percent.
+        j3: A percentage for one joint. In percent.
         j3_damping: 1 if the joint is damped, else 0.
-        j4: A share of a joint. In percent.
+        j4: A percentage for one joint. In percent.
         j4_damping: 1 if the joint is damped, else 0.
-        j5: A share of a joint. In percent.
+        j5: A percentage for one joint. In percent.
         j5_damping: 1 if the joint is damped, else 0.
-        j6: A share of a joint. In percent.
+        j6: A percentage for one joint. In percent.
         j6_damping: 1 if the joint is damped, else 0.
     """
 
@@ -183,9 +183,9 @@ class GetCommErrorCountsResult(NamedTuple):
     joint_read: int
     """Nothing was read from the joint."""
     end_send: int
-    """Nothing could be sent to the end."""
+    """Nothing could be sent to the end of the arm."""
     end_read: int
-    """Nothing was read from the end."""
+    """Nothing was read from the end of the arm."""
 
 
 class IsInitCalibrationResult(NamedTuple):
@@ -225,6 +225,6 @@ class GetToolConfigResult(NamedTuple):
     """The result of get_tool_config."""
 
     baud: int
-    """Baud rate of the port at the end."""
+    """Baud rate of the port at the end of the arm."""
     timeout: int
-    """Timeout of the port at the end."""
+    """Timeout of the port at the end of the arm."""

@@ -64,7 +64,7 @@ class _Methods2:
     def fourier_trajectories(self, trajectory: int) -> Any:
         """Identify the dynamics."""
     def get_atom_modify_version(self) -> Any:
-        """Read the revision of the end's firmware."""
+        """Read the revision of the firmware at the end of the arm."""
     def get_comm_error_counts(self, joint_id: int, _type: int) -> Any:
         """Count communication errors: ``get_comm_error_counts(joint, kind)``."""
     def get_down_encoders(self) -> Any:
@@ -142,7 +142,7 @@ class _Methods2:
     def resume(self, deceleration: int | None = 0) -> Any:
         """Continue the motion."""
     def set_control_mode(self, mode: int) -> Any:
-        """Set what the arm controls."""
+        """Set the control mode."""
     def set_drag_fifo(self, angles: Sequence[float]) -> Any:
         """Add a point."""
     def set_dynamic_parameters(self, add: int, data: float) -> Any:
@@ -243,6 +243,18 @@ class _Methods2:
 class _Methods3:
     def clear_error_information(self) -> Any:
         """Clear the error."""
+    def get_end_type(self) -> Any:
+        """Read the end type."""
+    def get_reference_frame(self) -> Any:
+        """Read the reference frame."""
+    def get_tool_reference(self) -> Any:
+        """Read the tool reference."""
+    def get_world_reference(self) -> Any:
+        """Read the world reference."""
+    def set_tool_reference(self, coords: Sequence[float]) -> Any:
+        """Set the tool reference."""
+    def set_world_reference(self, coords: Sequence[float]) -> Any:
+        """Set the world reference."""
 
 class _Methods4:
     def clear_queue(self) -> Any:
@@ -274,9 +286,9 @@ class _Methods5:
     def get_robot_modified_version(self) -> Any:
         """Read the firmware's revision."""
     def get_robot_tool_firmware_version(self) -> Any:
-        """Read the version of the end's firmware."""
+        """Read the version of the firmware at the end of the arm."""
     def get_robot_tool_modified_version(self) -> Any:
-        """Read the revision of the end's firmware."""
+        """Read the revision of the firmware at the end of the arm."""
     def get_servo_cw(self, servo_id: int) -> Any:
         """Read the dead zone clockwise: ``get_servo_cw(servo)``."""
     def get_servo_cww(self, servo_id: int) -> Any:
@@ -308,7 +320,7 @@ class _Methods5:
     def get_servos_voltage(self) -> Any:
         """Read the voltages at the servos."""
     def get_tool_in_io_state(self, pin: int) -> Any:
-        """Read a pin of the end."""
+        """Read a pin at the end of the arm."""
     def is_all_servos_enabled(self) -> Any:
         """Check which servos are connected."""
     def restore_servo_system_param(self, servo_id: int) -> Any:
@@ -339,7 +351,7 @@ class _Methods5:
         Calls ``set_tool_led_color(red, green, blue)``.
         """
     def set_tool_out_io_state(self, pin: int, status: int = 1) -> Any:
-        """Set a pin of the end: ``set_tool_out_io_state(pin, high)``."""
+        """Set a pin at the end of the arm: ``set_tool_out_io_state(pin, high)``."""
 
 class _Methods6:
     def drag_teach_clean(self) -> Any:
@@ -351,21 +363,19 @@ class _Methods6:
     def get_angle(self, joint_id: int) -> Any:
         """Read the angle of a joint: ``get_angle(joint)``."""
     def get_atom_version(self) -> Any:
-        """Read the version of the end's firmware."""
+        """Read the version of the firmware at the end of the arm."""
     def get_base_io_input(self, pin_no: int) -> Any:
         """Read an input of the base: ``get_base_io_input(pin)``."""
     def get_collision_mode(self) -> Any:
         """Check whether the collision check is on."""
     def get_collision_threshold(self) -> Any:
-        """Read when the joints notice a collision."""
+        """Read the collision thresholds."""
     def get_control_mode(self) -> Any:
-        """Read what the arm controls."""
+        """Read the control mode."""
     def get_digital_input(self, pin_no: int) -> Any:
-        """Read an input of the end: ``get_digital_input(pin)``."""
+        """Read an input at the end of the arm: ``get_digital_input(pin)``."""
     def get_digital_inputs(self) -> Any:
-        """Read the inputs of the end."""
-    def get_end_type(self) -> Any:
-        """Read the point of coordinates."""
+        """Read the inputs at the end of the arm."""
     def get_error_information(self) -> Any:
         """Read why the arm did not move."""
     def get_filter_len(self, rank: int) -> Any:
@@ -383,9 +393,7 @@ class _Methods6:
     def get_motors_run_err(self) -> Any:
         """Read the motors' errors during the motion."""
     def get_movement_type(self) -> Any:
-        """Read how the end moves."""
-    def get_reference_frame(self) -> Any:
-        """Read the frame of coordinates."""
+        """Read how the end of the arm moves."""
     def get_robot_status(self) -> Any:
         """Read the state of every joint."""
     def get_robot_type(self) -> Any:
@@ -400,14 +408,10 @@ class _Methods6:
         """Read the errors of the motors."""
     def get_system_version(self) -> Any:
         """Read the version of the firmware."""
-    def get_tool_reference(self) -> Any:
-        """Read the tool."""
     def get_torque_comp(self) -> Any:
         """Read the compensation of friction."""
     def get_vr_mode(self) -> Any:
-        """Check whether few targets are queued."""
-    def get_world_reference(self) -> Any:
-        """Read the world."""
+        """Check whether only two targets are queued."""
     def get_zero_pos(self) -> Any:
         """Read the zero positions."""
     def is_init_calibration(self) -> Any:
@@ -423,13 +427,13 @@ class _Methods6:
         _async: bool = False) -> Any:
         """Move along an axis by a distance: ``jog_increment_coord(axis, increment, speed)``."""
     def jog_rpy(self, axis: int, direction: int, speed: int, _async: bool = True) -> Any:
-        """Turn the end about an axis: ``jog_rpy(axis, direction, speed)``."""
+        """Turn the end of the arm about an axis: ``jog_rpy(axis, direction, speed)``."""
     def over_limit_return_zero(self) -> Any:
         """Return a joint from beyond its limits."""
     def pause(self, deceleration: int | None = 0) -> Any:
         """Pause the motion."""
     def send_coords(self, coords: Sequence[float], speed: int, _async: bool = False) -> Any:
-        """Send the end to coordinates: ``send_coords(coords, speed)``."""
+        """Send all coordinates: ``send_coords(coords, speed)``."""
     def servo_restore(self, joint_id: int) -> Any:
         """Recover motors from errors: ``servo_restore(joint)``."""
     def set_base_io_output(self, pin_no: int, pin_signal: int) -> Any:
@@ -439,11 +443,9 @@ class _Methods6:
     def set_collision_mode(self, mode: int) -> Any:
         """Turn the collision check on or off: ``set_collision_mode(on)``."""
     def set_collision_threshold(self, joint_id: int, threshold_value: int = 100) -> Any:
-        """Set when a joint notices a collision: ``set_collision_threshold(joint, threshold)``."""
+        """Set the collision threshold of a joint: ``set_collision_threshold(joint, threshold)``."""
     def set_digital_output(self, pin_no: int, pin_signal: int) -> Any:
-        """Set an output of the end: ``set_digital_output(pin, high)``."""
-    def set_end_type(self, end: int) -> Any:
-        """Choose the point of coordinates."""
+        """Set an output at the end of the arm: ``set_digital_output(pin, high)``."""
     def set_filter_len(self, rank: int, value: int) -> Any:
         """Set the length of a filter: ``set_filter_len(filter, length)``."""
     def set_joint_max_angle(self, joint_id: int, degree: float) -> Any:
@@ -457,17 +459,11 @@ class _Methods6:
     def set_model_direction(self, joint_id: int, direction: int) -> Any:
         """Set the direction of a joint: ``set_model_direction(joint, same)``."""
     def set_movement_type(self, move_type: int) -> Any:
-        """Set how the end moves: ``set_movement_type(mode)``."""
-    def set_reference_frame(self, rftype: int) -> Any:
-        """Choose the frame of coordinates: ``set_reference_frame(frame)``."""
+        """Set how the end of the arm moves: ``set_movement_type(mode)``."""
     def set_servo_calibration(self, joint_id: int) -> Any:
         """Calibrate a joint: ``set_servo_calibration(joint)``."""
-    def set_tool_reference(self, coords: Sequence[float]) -> Any:
-        """Set the tool."""
     def set_vr_mode(self, mode: int) -> Any:
-        """Queue few targets: ``set_vr_mode(on)``."""
-    def set_world_reference(self, coords: Sequence[float]) -> Any:
-        """Set the world."""
+        """Set whether only two targets are queued: ``set_vr_mode(on)``."""
     def solve_inv_kinematics(self, new_coords: Sequence[float], old_angles: Sequence[float]) -> Any:
         """Calculate angles: ``solve_inv_kinematics(coords, angles)``."""
     def stop(self, deceleration: int | None = 0, _async: bool = False) -> Any:
@@ -543,14 +539,10 @@ class _Methods10:
 class _Methods11:
     def get_angles_coords(self) -> Any:
         """Read the joint angles and the coordinates."""
-    def get_end_type(self) -> Any:
-        """Read the end type."""
     def get_fresh_mode(self) -> Any:
         """Read how a new target changes a running motion."""
     def get_movement_type(self) -> Any:
         """Read the path to coordinates."""
-    def get_reference_frame(self) -> Any:
-        """Read the reference frame."""
     def get_servo_speeds(self) -> Any:
         """Read the speeds of the servos."""
     def get_servo_status(self) -> Any:
@@ -559,18 +551,10 @@ class _Methods11:
         """Read the temperatures of the servos."""
     def get_servo_voltages(self) -> Any:
         """Read the voltages at the servos."""
-    def get_tool_reference(self) -> Any:
-        """Read the tool reference."""
-    def get_world_reference(self) -> Any:
-        """Read the world reference."""
     def read_next_error(self) -> Any:
         """Read the joints' errors."""
     def set_movement_type(self, move_type: int) -> Any:
         """Set the path to coordinates: ``set_movement_type(mode)``."""
-    def set_tool_reference(self, coords: Sequence[float]) -> Any:
-        """Set the tool reference."""
-    def set_world_reference(self, coords: Sequence[float]) -> Any:
-        """Set the world reference."""
 
 class _Methods12:
     def get_angles_plan(self) -> Any:
@@ -645,11 +629,11 @@ class _Methods18:
     def jog_increment_angle(self, joint_id: int, increment: float, speed: int) -> Any:
         """Jog a joint by a step: ``jog_increment_angle(joint, increment, speed)``."""
     def jog_rpy(self, end_direction: int, direction: int, speed: int) -> Any:
-        """Jog a rotation of the end: ``jog_rpy(axis, direction, speed)``."""
+        """Jog a rotation of the end of the arm: ``jog_rpy(axis, direction, speed)``."""
 
 class _Methods19:
     def get_tool_modify_version(self) -> Any:
-        """Read the revision of the end's firmware."""
+        """Read the revision of the firmware at the end of the arm."""
 
 class _Methods20:
     def get_transponder_mode(self) -> Any:
@@ -661,7 +645,7 @@ class _Methods20:
         _async: bool = False) -> Any:
         """Jog a coordinate by a step: ``jog_increment_coord(axis, increment, speed)``."""
     def jog_rpy(self, end_direction: int, direction: int, speed: int, _async: bool = False) -> Any:
-        """Jog a rotation of the end: ``jog_rpy(axis, direction, speed)``."""
+        """Jog a rotation of the end of the arm: ``jog_rpy(axis, direction, speed)``."""
     def send_radians(self, radians: Sequence[float], speed: int, _async: bool = False) -> Any:
         """Send all joints to angles in radians: ``send_radians(radians, speed)``."""
     def set_gripper_state(self, flag: int, speed: int, _type_1: int | None = None,
@@ -766,8 +750,6 @@ class _Methods37:
 class _Methods38:
     def set_end_type(self, end: int) -> Any:
         """Set the end type."""
-    def set_fresh_mode(self, mode: int) -> Any:
-        """Set how a new target changes a running motion."""
     def set_reference_frame(self, rftype: int) -> Any:
         """Set the reference frame: ``set_reference_frame(frame)``."""
 
@@ -776,20 +758,24 @@ class _Methods39:
         """Set the four-piece motor's zero to its position."""
 
 class _Methods40:
+    def set_fresh_mode(self, mode: int) -> Any:
+        """Set how a new target changes a running motion."""
+
+class _Methods41:
     def set_gripper_state(self, flag: int, speed: int, _type_1: int | None = None) -> Any:
         """Open or close the gripper: ``set_gripper_state(state, speed, gripper)``."""
     def set_gripper_value(self, gripper_value: int, speed: int,
         gripper_type: int | None = None) -> Any:
         """Set the gripper's opening: ``set_gripper_value(value, speed, gripper)``."""
 
-class _Methods41:
+class _Methods42:
     def set_gripper_state(self, flag: int, speed: int, _type_1: int | None = None) -> Any:
         """Open or close the gripper: ``set_gripper_state(state, speed, gripper, torque)``."""
     def set_gripper_value(self, gripper_value: int, speed: int,
         gripper_type: int | None = None) -> Any:
         """Set the gripper's opening: ``set_gripper_value(value, speed, gripper, torque)``."""
 
-class _Methods42:
+class _Methods43:
     def set_joint_max(self, id: int, angle: float) -> Any:
         """Set the largest angle of a joint: ``set_joint_max(joint, angle)``."""
     def set_joint_min(self, id: int, angle: float) -> Any:
@@ -798,7 +784,8 @@ class _Methods42:
 class MyCobot280(_Methods1, _Methods3, _Methods4, _Methods7, _Methods8, _Methods9, _Methods10,
     _Methods11, _Methods12, _Methods13, _Methods15, _Methods17, _Methods20, _Methods22, _Methods23,
     _Methods24, _Methods27, _Methods29, _Methods30, _Methods32, _Methods33, _Methods34, _Methods36,
-    _Methods37, _Methods38, _Methods39, _Methods42, Homing, WaitingWithMode, StoppingGripper, Pins):
+    _Methods37, _Methods38, _Methods39, _Methods40, _Methods43, Homing, WaitingWithMode,
+    StoppingGripper, Pins):
     """A myCobot 280 on a serial port."""
 
     NATIVE: ClassVar[type[mycobot280.MyCobot280]]
@@ -862,11 +849,11 @@ class MyCobot280RDKX5(_Methods1, _Methods3, _Methods4, _Methods7, _Methods8, _Me
     def get_servo_data(self, servo_id: int, address: int, mode: int | None = None) -> Any:
         """Read a servo register: ``get_servo_data(joint, register, mode)``."""
     def get_tool_system_version(self) -> Any:
-        """Read the version of the end's firmware."""
+        """Read the version of the firmware at the end of the arm."""
     def is_in_position(self, data: Sequence[float], mode: int = 0) -> Any:
         """Check whether a target is reached: ``is_in_position(target, kind)``."""
     def is_tool_button_click(self) -> Any:
-        """Check whether the button at the end is pressed."""
+        """Check whether the button at the end of the arm is pressed."""
     def is_tool_connected(self) -> Any:
         """Check whether the Atom is connected."""
     def jog_increment_coord(self, coord_id: int, increment: float, speed: int) -> Any:
@@ -925,7 +912,7 @@ class MyCobot280RDKX5Socket(MyCobot280RDKX5):
 class MechArm270(_Methods1, _Methods3, _Methods4, _Methods7, _Methods8, _Methods9, _Methods10,
     _Methods11, _Methods12, _Methods13, _Methods15, _Methods17, _Methods20, _Methods23, _Methods24,
     _Methods27, _Methods30, _Methods32, _Methods33, _Methods34, _Methods36, _Methods37, _Methods38,
-    _Methods42, HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
+    _Methods40, _Methods43, HomingQuietly, WaitingWithMode, TorqueGripper, Pins):
     """A mechArm 270 on a serial port."""
 
     NATIVE: ClassVar[type[mecharm270.MechArm270]]
@@ -943,7 +930,7 @@ class MechArmSocket(MechArm270):
         errors: OnFailure | None = None) -> None: ...
 
 class MyPalletizer260(_Methods7, _Methods8, _Methods10, _Methods13, _Methods15, _Methods22,
-    _Methods23, _Methods24, _Methods25, _Methods26, _Methods35, _Methods37, _Methods40, _Methods42,
+    _Methods23, _Methods24, _Methods25, _Methods26, _Methods35, _Methods37, _Methods41, _Methods43,
     HomingWithoutResult, WaitingWithoutMode, Pins):
     """A myPalletizer 260 on a serial port."""
 
@@ -978,8 +965,8 @@ class MyPalletizerSocket(MyPalletizer260):
 
 class MyCobot320(_Methods1, _Methods3, _Methods7, _Methods8, _Methods10, _Methods11, _Methods12,
     _Methods13, _Methods17, _Methods18, _Methods21, _Methods24, _Methods27, _Methods30, _Methods32,
-    _Methods33, _Methods34, _Methods35, _Methods37, _Methods38, _Methods40, _Methods42, Homing,
-    WaitingWithMode, Registers, Pins):
+    _Methods33, _Methods34, _Methods35, _Methods37, _Methods38, _Methods40, _Methods41, _Methods43,
+    Homing, WaitingWithMode, Registers, Pins):
     """A myCobot 320 on a serial port."""
 
     NATIVE: ClassVar[type[mycobot320.MyCobot320]]
@@ -1139,7 +1126,7 @@ class MyCobot320Socket(MyCobot320):
 
 class MyArm(_Methods3, _Methods7, _Methods8, _Methods9, _Methods10, _Methods11, _Methods13,
     _Methods25, _Methods26, _Methods28, _Methods33, _Methods34, _Methods35, _Methods36, _Methods38,
-    _Methods39, _Methods40, _Methods42, Homing, WaitingWithMode, TwoPositions, Pins):
+    _Methods39, _Methods40, _Methods41, _Methods43, Homing, WaitingWithMode, TwoPositions, Pins):
     """A myArm 300 on a serial port."""
 
     NATIVE: ClassVar[type[myarm300.MyArm300]]
@@ -1230,13 +1217,16 @@ class MyBuddySocket(_Methods7, Limbs):
     def __init__(self, ip: str, netport: int = 9000, *,
         errors: OnFailure | None = None) -> None: ...
     def base_to_single_coords(self, base_coords: Sequence[float], arm: int) -> Any:
-        """Convert coordinates of the base to an arm: ``base_to_single_coords(coords, arm)``."""
+        """Convert coordinates in the frame of the base to an arm's.
+
+        Calls ``base_to_single_coords(coords, arm)``.
+        """
     def clear_error_information(self, ids: int = 0) -> Any:
         """Clear the error: ``at(ids).clear_error_information()``."""
     def collision(self, left_angles: Sequence[float], right_angles: Sequence[float]) -> Any:
         """Check whether the arms collide: ``collision(left, right)``."""
     def collision_switch(self, state: int) -> Any:
-        """Turn the check for collisions on or off: ``collision_switch(watched)``."""
+        """Turn the collision check on or off: ``collision_switch(watched)``."""
     def focus_servo(self, id: int, servo_id: int) -> Any:
         """Power a servo: ``at(id).focus_servo(joint)``."""
     def get_acceleration(self, id: int) -> Any:
@@ -1246,7 +1236,7 @@ class MyBuddySocket(_Methods7, Limbs):
     def get_angles(self, id: int) -> Any:
         """Read the joint angles: ``at(id).get_angles()``."""
     def get_base_coord(self, id: int) -> Any:
-        """Read an arm's coordinates in the base: ``at(id).get_base_coord()``."""
+        """Read an arm's coordinates in the frame of the base: ``at(id).get_base_coord()``."""
     def get_coords(self, id: int) -> Any:
         """Read the coordinates: ``at(id).get_coords()``."""
     def get_encoder(self, id: int, joint_id: int) -> Any:
@@ -1298,7 +1288,7 @@ class MyBuddySocket(_Methods7, Limbs):
     def is_all_servo_enable(self, id: int) -> Any:
         """Check whether all servos have power: ``at(id).is_all_servo_enable()``."""
     def is_collision_on(self) -> Any:
-        """Check whether collisions are watched for."""
+        """Check whether the collision check is on."""
     def is_controller_connected(self, id: int = 0) -> Any:
         """Check whether the Atom is connected: ``at(id).is_controller_connected()``."""
     def is_free_mode(self, id: int) -> Any:
@@ -1346,7 +1336,7 @@ class MyBuddySocket(_Methods7, Limbs):
     def send_angles(self, id: int, degrees: Sequence[float], speed: int) -> Any:
         """Send all joints to angles: ``at(id).send_angles(angles, speed)``."""
     def send_angles_auto(self, id: int, degrees: Sequence[float], _time: int) -> Any:
-        """Send all joints to angles in a time: ``at(id).send_angles_auto(angles, time)``."""
+        """Send all joints to angles within a time: ``at(id).send_angles_auto(angles, time)``."""
     def send_coord(self, id: int, coord: int, data: float, speed: int) -> Any:
         """Send one coordinate: ``at(id).send_coord(axis, coord, speed)``."""
     def send_coords(self, id: int, coords: Sequence[float], speed: int, mode: int) -> Any:
@@ -1407,7 +1397,7 @@ class MyBuddySocket(_Methods7, Limbs):
     def set_tool_pin_mode(self, id: int, pin_no: int, pin_mode: int) -> Any:
         """Set what a pin of the Atom is used for: ``at(id).set_pin_mode(pin, mode)``."""
     def set_tool_pwm_output(self, id: int, channel: int, frequency: int, pin_val: int) -> Any:
-        """Set a PWM output of the arm's end.
+        """Set a PWM output at the end of the arm.
 
         Calls ``at(id).set_pwm_output(channel, frequency, duty)``.
         """
@@ -1418,9 +1408,15 @@ class MyBuddySocket(_Methods7, Limbs):
     def stop(self, id: int) -> Any:
         """Stop: ``at(id).stop()``."""
     def write_base_coord(self, id: int, axis: int, coord: float, speed: int) -> Any:
-        """Send one coordinate in the base: ``at(id).write_base_coord(axis, coord, speed)``."""
+        """Send one coordinate in the frame of the base.
+
+        Calls ``at(id).write_base_coord(axis, coord, speed)``.
+        """
     def write_base_coords(self, id: int, coords: Sequence[float], speed: int) -> Any:
-        """Send all coordinates in the base: ``at(id).write_base_coords(coords, speed)``."""
+        """Send all coordinates in the frame of the base.
+
+        Calls ``at(id).write_base_coords(coords, speed)``.
+        """
 
 class MyBuddy(LimbPins, MyBuddySocket):
     """A myBuddy on a serial port."""
@@ -1431,7 +1427,7 @@ class MyBuddy(LimbPins, MyBuddySocket):
         debug: bool = False, *, errors: OnFailure | None = None) -> None: ...
 
 class MyCobotSocket(_Methods7, _Methods8, _Methods10, _Methods13, _Methods24, _Methods27,
-    _Methods30, _Methods32, _Methods33, _Methods34, _Methods35, _Methods37, _Methods41,
+    _Methods30, _Methods32, _Methods33, _Methods34, _Methods35, _Methods37, _Methods42,
     HomingAndWaiting, WaitingForResult):
     """A myCobot behind a TCP server, by the maker's older class; for the 280."""
 
@@ -1450,7 +1446,7 @@ class MyCobot(_Methods1, Homing, WaitingLonger, Pins, MyCobotSocket):
         errors: OnFailure | None = None) -> None: ...
 
 class MechArm(_Methods1, _Methods7, _Methods8, _Methods10, _Methods13, _Methods24, _Methods27,
-    _Methods30, _Methods32, _Methods33, _Methods34, _Methods35, _Methods37, _Methods41, Homing,
+    _Methods30, _Methods32, _Methods33, _Methods34, _Methods35, _Methods37, _Methods42, Homing,
     WaitingLonger, Pins):
     """A mechArm 270 on a serial port, by the maker's older class."""
 
@@ -1461,7 +1457,7 @@ class MechArm(_Methods1, _Methods7, _Methods8, _Methods10, _Methods13, _Methods2
         errors: OnFailure | None = None) -> None: ...
 
 class MyPalletizer(_Methods7, _Methods8, _Methods10, _Methods13, _Methods24, _Methods27, _Methods30,
-    _Methods32, _Methods33, _Methods35, _Methods37, _Methods40, WaitingInChain, Pins):
+    _Methods32, _Methods33, _Methods35, _Methods37, _Methods41, WaitingInChain, Pins):
     """A myPalletizer 260 on a serial port, by the maker's older class."""
 
     NATIVE: ClassVar[type[mypalletizer260.MyPalletizer260]]
@@ -1473,7 +1469,7 @@ class MyPalletizer(_Methods7, _Methods8, _Methods10, _Methods13, _Methods24, _Me
         """Send all coordinates: ``send_coords(coords, speed)``."""
 
 class Mercury(_Methods2, _Methods3, _Methods6, _Methods10, _Methods14, _Methods16, _Methods21,
-    _Methods31, _Methods32, _Methods37, ByPort):
+    _Methods31, _Methods32, _Methods37, _Methods38, ByPort):
     """A Mercury A1; on a port with the name of an arm, a Mercury B1 or X1."""
 
     NATIVE: ClassVar[type[mercury_b1.MercuryB1]]
@@ -1484,9 +1480,9 @@ class Mercury(_Methods2, _Methods3, _Methods6, _Methods10, _Methods14, _Methods1
     def clear_waist_queue(self) -> Any:
         """Discard the targets of head and waist."""
     def get_base_coords(self) -> Any:
-        """Read the coordinates from the waist."""
+        """Read the coordinates in the frame of the waist."""
     def get_servo_cw(self, head_id: int) -> Any:
-        """Read when a head joint is at its target: ``get_servo_cw(joint)``."""
+        """Read the permitted deviation of a head joint: ``get_servo_cw(joint)``."""
     def get_servo_data(self, servo_id: int, address: int, mode: int) -> Any:
         """Read a register: ``get_servo_data(servo, register, mode)``."""
     def jog_base_coord(self, axis: int, direction: int, speed: int, _async: bool = True) -> Any:
@@ -1498,15 +1494,21 @@ class Mercury(_Methods2, _Methods3, _Methods6, _Methods10, _Methods14, _Methods1
         Calls ``jog_base_increment_coord(axis, increment, speed)``.
         """
     def jog_base_rpy(self, axis: int, direction: int, speed: int, _async: bool = True) -> Any:
-        """Turn the end about an axis of the waist: ``jog_base_rpy(axis, direction, speed)``."""
+        """Turn the end of the arm about an axis of the waist.
+
+        Calls ``jog_base_rpy(axis, direction, speed)``.
+        """
     def send_base_coord(self, coord_id: int, base_coord: float, speed: int,
         _async: bool = False) -> Any:
-        """Send one coordinate from the waist: ``send_base_coord(axis, coord, speed)``."""
+        """Send one coordinate in the frame of the waist.
+
+        Calls ``send_base_coord(axis, coord, speed)``.
+        """
     def send_base_coords(self, base_coords: Sequence[float], speed: int,
         _async: bool = False) -> Any:
-        """Send the end to coordinates from the waist: ``send_base_coords(coords, speed)``."""
+        """Send all coordinates in the frame of the waist: ``send_base_coords(coords, speed)``."""
     def set_servo_cw(self, head_id: int, err_angle: float) -> Any:
-        """Set when a head joint is at its target: ``set_servo_cw(joint, angle)``."""
+        """Set the permitted deviation of a head joint: ``set_servo_cw(joint, angle)``."""
     def set_servo_data(self, servo_id: int, address: int, value: int, mode: int) -> Any:
         """Write a register: ``set_servo_data(servo, register, value, mode)``."""
     def write_waist_sync(self, current_angle: float, target_angle: float, speed: int) -> Any:
@@ -1521,7 +1523,7 @@ class MercurySocket(Mercury):
         errors: OnFailure | None = None) -> None: ...
 
 class Pro400(_Methods2, _Methods3, _Methods6, _Methods10, _Methods16, _Methods21, _Methods31,
-    _Methods32, _Methods37, Reporting):
+    _Methods32, _Methods37, _Methods38, Reporting):
     """A myCobot Pro 400 on a serial port."""
 
     NATIVE: ClassVar[type[pro400.Pro400]]
@@ -1543,7 +1545,7 @@ class Pro400Client(Pro400):
         errors: OnFailure | None = None) -> None: ...
 
 class Pro630Client(_Methods2, _Methods3, _Methods6, _Methods10, _Methods21, _Methods31, _Methods32,
-    _Methods37, MethodsOfPro630):
+    _Methods37, _Methods38, MethodsOfPro630):
     """A myCobot Pro 630 behind a TCP server."""
 
     NATIVE: ClassVar[type[pro630.Pro630]]
@@ -1567,7 +1569,7 @@ class Pro630(PinsOfPro630, Pro630Client):
         errors: OnFailure | None = None) -> None: ...
 
 class Pro450Client(_Methods3, _Methods6, _Methods10, _Methods14, _Methods19, _Methods31, _Methods32,
-    _Methods37, MethodsOfPro450):
+    _Methods37, _Methods38, MethodsOfPro450):
     """A myCobot Pro 450, whose server is inside of the arm."""
 
     NATIVE: ClassVar[type[pro450.Pro450]]
@@ -1603,7 +1605,7 @@ class Pro450Client(_Methods3, _Methods6, _Methods10, _Methods14, _Methods19, _Me
     def set_communication_mode(self, protocol_mode: int = 0) -> Any:
         """Set the protocol: ``set_communication_mode(protocol)``."""
     def set_control_mode(self, mode: int = 0) -> Any:
-        """Set what the arm controls."""
+        """Set the control mode."""
     def set_debug_state(self, log_state: int) -> Any:
         """Set which logs the arm writes: ``set_debug_state(logs)``."""
     def set_free_move_mode(self, mode: int) -> Any:

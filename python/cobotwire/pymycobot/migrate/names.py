@@ -94,7 +94,7 @@ class Names:
         return all(isinstance(each, kind) for each in self.values(node) - {NONE})
 
     def arm_names(self, methods: frozenset[str]) -> set[str]:
-        """Return the names of arms, and of objects with these methods, without the part before a dot."""
+        """Return the names (after the last dot) of arms, and of objects with these methods."""
         arms = (key for key, found in self._bound.items() if any(isinstance(v, Arm) for v in found))
         found = {str(key[-1]) for key in arms}
         for call in self._found.calls:

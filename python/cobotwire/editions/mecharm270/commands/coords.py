@@ -25,7 +25,8 @@ class CoordsCommands(Client):
     ) -> None:
         """Send one coordinate.
 
-        Moves the end so that one coordinate has a new value; the other five stay the same.
+        Moves the end of the arm so that one coordinate has a new value; the other five stay the
+        same.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
@@ -51,8 +52,8 @@ class CoordsCommands(Client):
         this; no source states it.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y -272..272 millimetres; z
-                -86..408.9 millimetres; rx, ry, rz -180..180 degrees)).
+            coords: Position and orientation of the end of the arm (6 numbers (x, y -272..272
+                millimetres; z -86..408.9 millimetres; rx, ry, rz -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
             mode: The path to the target. Left out: that of set_movement_type (one of ANGULAR (0),
                 LINEAR (1), UNEXPLAINED (2); optional).

@@ -37,9 +37,9 @@ class JogCommands(Client):
     ) -> None:
         """Jog a coordinate by a step.
 
-        Moves the end along or about one axis by a step from where it is, at a speed in percent of
-        the maximum; a negative step goes back. The step is relative; sending it twice moves twice
-        as far. The same id without data is jog_stop; the length tells them apart.
+        Moves the end of the arm along or about one axis by a step from where it is, at a speed in
+        percent of the maximum; a negative step goes back. The step is relative; sending it twice
+        moves twice as far. The same id without data is jog_stop; the length tells them apart.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).

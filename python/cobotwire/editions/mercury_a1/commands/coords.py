@@ -18,8 +18,8 @@ class CoordsCommands(Client):
     def get_coords(self) -> Coords:
         """Read the coordinates.
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
-            rz -327.68..327.67 degrees).
+        Returns: Position and orientation of the end of the arm (x, y, z -3276.8..3276.7
+            millimetres; rx, ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.coords.GetCoords())
@@ -31,8 +31,8 @@ class CoordsCommands(Client):
             angles: The seven joint angles, base first (7 numbers (j1, j3, j5, j7 -165..165 degrees;
                 j2 -50..120 degrees; j4 -165..1 degrees; j6 -75..255 degrees)).
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
-            rz -327.68..327.67 degrees).
+        Returns: Position and orientation of the end of the arm (x, y, z -3276.8..3276.7
+            millimetres; rx, ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.coords.AnglesToCoords(angles))
@@ -42,7 +42,7 @@ class CoordsCommands(Client):
     ) -> None:
         """Send one coordinate.
 
-        Moves the end so that one coordinate has a new value.
+        Moves the end of the arm so that one coordinate has a new value.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
@@ -57,11 +57,11 @@ class CoordsCommands(Client):
     def send_coords(
         self, coords: Sequence[float], speed: int, *, ack_within: float | None = None
     ) -> None:
-        """Send the end to coordinates.
+        """Send all coordinates.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y -459..459 millimetres; z
-                -300..542 millimetres; rx, ry, rz -180..180 degrees)).
+            coords: Position and orientation of the end of the arm (6 numbers (x, y -459..459
+                millimetres; z -300..542 millimetres; rx, ry, rz -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x25.
@@ -78,12 +78,12 @@ class CoordsCommands(Client):
     ) -> None:
         """Move on an arc through two points.
 
-        Moves the end on an arc through a point to another one.
+        Moves the end of the arm on an arc through one point to another.
 
         Args:
-            through: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
-                millimetres; rx, ry, rz -327.68..327.67 degrees)).
-            end: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
+            through: Position and orientation of the end of the arm (6 numbers (x, y, z
+                -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees)).
+            end: Position and orientation of the end of the arm (6 numbers (x, y, z -3276.8..3276.7
                 millimetres; rx, ry, rz -327.68..327.67 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
@@ -103,8 +103,8 @@ class CoordsCommands(Client):
         """Move on an arc with a radius.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y -459..459 millimetres; z
-                -300..542 millimetres; rx, ry, rz -180..180 degrees)).
+            coords: Position and orientation of the end of the arm (6 numbers (x, y -459..459
+                millimetres; z -300..542 millimetres; rx, ry, rz -180..180 degrees)).
             radius: Radius of an arc (0..655.35 millimetres).
             speed: Speed in percent of the maximum (1..100 percent).
             arc: Which of two arcs with the same radius (one of USUAL (0), MAJOR (1), MINOR (2)).
@@ -116,11 +116,11 @@ class CoordsCommands(Client):
     def solve_inv_kinematics(self, coords: Sequence[float], angles: Sequence[float]) -> Angles:
         """Calculate angles.
 
-        Calculates the angles near others that bring the end to coordinates.
+        Calculates the joint angles, near given ones, that bring the end of the arm to coordinates.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y -459..459 millimetres; z
-                -300..542 millimetres; rx, ry, rz -180..180 degrees)).
+            coords: Position and orientation of the end of the arm (6 numbers (x, y -459..459
+                millimetres; z -300..542 millimetres; rx, ry, rz -180..180 degrees)).
             angles: The seven joint angles, base first (7 numbers (j1, j3, j5, j7 -165..165 degrees;
                 j2 -50..120 degrees; j4 -165..1 degrees; j6 -75..255 degrees)).
 

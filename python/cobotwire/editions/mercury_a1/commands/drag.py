@@ -27,7 +27,7 @@ class DragCommands(Client):
     def drag_teach_execute(self, *, ack_within: float | None = None) -> None:
         """Repeat the recorded motion.
 
-        Moves the arm as it was recorded.
+        Moves the arm along the recorded points.
 
         Safety: motion. Command id 0x71.
         """

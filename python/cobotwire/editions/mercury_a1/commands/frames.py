@@ -13,30 +13,30 @@ from ..values import Coords
 
 
 class FramesCommands(Client):
-    """In which frame coordinates are, and which point of the end they are about."""
+    """The frame and the point to which coordinates refer."""
 
     def set_tool_reference(
         self, coords: Sequence[float], *, ack_within: float | None = None
     ) -> None:
-        """Set the tool.
+        """Set the tool reference.
 
         Sets where the tool is on the flange.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
-                millimetres; rx, ry, rz -327.68..327.67 degrees)).
+            coords: Position and orientation of the end of the arm (6 numbers (x, y, z
+                -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees)).
 
         Safety: setting. Command id 0x81.
         """
         return self._send(messages.frames.SetToolReference(coords), ack_within)
 
     def get_tool_reference(self) -> Coords:
-        """Read the tool.
+        """Read the tool reference.
 
         Reads where the tool is on the flange.
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
-            rz -327.68..327.67 degrees).
+        Returns: Position and orientation of the end of the arm (x, y, z -3276.8..3276.7
+            millimetres; rx, ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0x82.
         """
         return self._call(messages.frames.GetToolReference())
@@ -44,25 +44,25 @@ class FramesCommands(Client):
     def set_world_reference(
         self, coords: Sequence[float], *, ack_within: float | None = None
     ) -> None:
-        """Set the world.
+        """Set the world reference.
 
         Sets where the base is in the world.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
-                millimetres; rx, ry, rz -327.68..327.67 degrees)).
+            coords: Position and orientation of the end of the arm (6 numbers (x, y, z
+                -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees)).
 
         Safety: setting. Command id 0x83.
         """
         return self._send(messages.frames.SetWorldReference(coords), ack_within)
 
     def get_world_reference(self) -> Coords:
-        """Read the world.
+        """Read the world reference.
 
         Reads where the base is in the world.
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
-            rz -327.68..327.67 degrees).
+        Returns: Position and orientation of the end of the arm (x, y, z -3276.8..3276.7
+            millimetres; rx, ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0x84.
         """
         return self._call(messages.frames.GetWorldReference())
@@ -70,37 +70,37 @@ class FramesCommands(Client):
     def set_reference_frame(
         self, frame: ReferenceFrame | int, *, ack_within: float | None = None
     ) -> None:
-        """Choose the frame of coordinates.
+        """Set the reference frame.
 
         Args:
-            frame: In which frame coordinates are (one of BASE (0), WORLD (1)).
+            frame: The frame in which coordinates are given (one of BASE (0), WORLD (1)).
 
         Safety: setting. Command id 0x85.
         """
         return self._send(messages.frames.SetReferenceFrame(frame), ack_within)
 
     def get_reference_frame(self) -> ReferenceFrame:
-        """Read the frame of coordinates.
+        """Read the reference frame.
 
-        Returns: In which frame coordinates are (one of BASE (0), WORLD (1)).
+        Returns: The frame in which coordinates are given (one of BASE (0), WORLD (1)).
         Safety: query. Command id 0x86.
         """
         return self._call(messages.frames.GetReferenceFrame())
 
     def set_end_type(self, end: EndType | int, *, ack_within: float | None = None) -> None:
-        """Choose the point of coordinates.
+        """Set the end type.
 
         Args:
-            end: What coordinates are about (one of FLANGE (0), TOOL (1)).
+            end: The point that coordinates describe (one of FLANGE (0), TOOL (1)).
 
         Safety: setting. Command id 0x89.
         """
         return self._send(messages.frames.SetEndType(end), ack_within)
 
     def get_end_type(self) -> EndType:
-        """Read the point of coordinates.
+        """Read the end type.
 
-        Returns: What coordinates are about (one of FLANGE (0), TOOL (1)).
+        Returns: The point that coordinates describe (one of FLANGE (0), TOOL (1)).
         Safety: query. Command id 0x8A.
         """
         return self._call(messages.frames.GetEndType())

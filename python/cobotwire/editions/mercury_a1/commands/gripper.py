@@ -121,7 +121,8 @@ class GripperCommands(Client):
         Args:
             address: Number of a register of the tool (1..53).
             value: Value of a register of the tool (-32768..32767; default: 0).
-            gripper: Number of the tool on its bus; it is 14 at first (1..254; default: 14).
+            gripper: Number of the tool on its bus; it is 14 unless it was changed (1..254; default:
+                14).
 
         Safety: motion. Command id 0xD8.
         """
@@ -144,7 +145,8 @@ class GripperCommands(Client):
             address: Number of a register of the tool (1..53).
             finger: Number of a finger (1..6).
             value: Value of a register of the tool (-32768..32767).
-            gripper: Number of the tool on its bus; it is 14 at first (1..254; default: 14).
+            gripper: Number of the tool on its bus; it is 14 unless it was changed (1..254; default:
+                14).
 
         Safety: motion. Command id 0xD8.
         """
@@ -166,7 +168,8 @@ class GripperCommands(Client):
             angles: The positions of the six fingers (6 numbers (finger_1, finger_2, finger_3,
                 finger_4, finger_5, finger_6 0..100)).
             speed: Speed of the fingers in percent of the maximum (1..100 percent).
-            gripper: Number of the tool on its bus; it is 14 at first (1..254; default: 14).
+            gripper: Number of the tool on its bus; it is 14 unless it was changed (1..254; default:
+                14).
 
         Safety: motion. Command id 0xD8.
         """
@@ -179,7 +182,8 @@ class GripperCommands(Client):
 
         Args:
             address: Number of a register of the tool (1..53).
-            gripper: Number of the tool on its bus; it is 14 at first (1..254; default: 14).
+            gripper: Number of the tool on its bus; it is 14 unless it was changed (1..254; default:
+                14).
 
         Returns: Value of a register of the tool (-32768..32767).
         Safety: query. Command id 0xD9.
@@ -192,7 +196,8 @@ class GripperCommands(Client):
         Args:
             address: Number of a register of the tool (1..53).
             finger: Number of a finger; 0 for the whole hand (0..6; default: 0).
-            gripper: Number of the tool on its bus; it is 14 at first (1..254; default: 14).
+            gripper: Number of the tool on its bus; it is 14 unless it was changed (1..254; default:
+                14).
 
         Returns: Value of a register of the tool (-32768..32767).
         Safety: query. Command id 0xD9.

@@ -10,12 +10,12 @@ from ..values import GetDigitalInputsResult
 
 
 class IoCommands(Client):
-    """Inputs and outputs of the base and the end, the button and the light."""
+    """Inputs and outputs at the base and at the end of the arm, the button and the light."""
 
     def get_digital_inputs(self) -> GetDigitalInputsResult:
-        """Read the inputs of the end.
+        """Read the inputs at the end of the arm.
 
-        Reads both inputs and the button of the end.
+        Reads both inputs and the button at the end of the arm.
 
         Returns: True if the first input is high; True if the second input is high; True while the
             button is pressed.
@@ -24,10 +24,10 @@ class IoCommands(Client):
         return self._call(messages.io.GetDigitalInputs())
 
     def set_digital_output(self, pin: int, high: bool, *, ack_within: float | None = None) -> None:
-        """Set an output of the end.
+        """Set an output at the end of the arm.
 
         Args:
-            pin: Pin number at the end (one of 1, 2).
+            pin: Pin number at the end of the arm (one of 1, 2).
             high: True for a high level (True or False).
 
         Safety: setting. Command id 0x61.
@@ -35,10 +35,10 @@ class IoCommands(Client):
         return self._send(messages.io.SetDigitalOutput(pin, high), ack_within)
 
     def get_digital_input(self, pin: int) -> bool:
-        """Read an input of the end.
+        """Read an input at the end of the arm.
 
         Args:
-            pin: Pin number at the end (one of 1, 2).
+            pin: Pin number at the end of the arm (one of 1, 2).
 
         Returns: True for a high level.
         Safety: query. Command id 0x62.
@@ -48,7 +48,7 @@ class IoCommands(Client):
     def is_btn_clicked(self) -> bool:
         """Check whether the button is pressed.
 
-        Reports whether the button of the end is pressed.
+        Reports whether the button at the end of the arm is pressed.
 
         Returns: True while the button is pressed.
         Safety: query. Command id 0x6F.

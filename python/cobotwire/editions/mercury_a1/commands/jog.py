@@ -38,7 +38,7 @@ class JogCommands(Client):
     ) -> None:
         """Jog along an axis.
 
-        Moves the end along or about one axis until it is stopped.
+        Moves the end of the arm along or about one axis until it is stopped.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
@@ -71,12 +71,12 @@ class JogCommands(Client):
     ) -> None:
         """Move along an axis by a distance.
 
-        Moves the end along or about one axis by a distance or an angle.
+        Moves the end of the arm along or about one axis by a distance or an angle.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
-            increment: By how much the end moves along x or y (for X, Y: -918..918 millimetres; for
-                Z: -842..842 millimetres; for RX, RY, RZ: -327.67..327.67 degrees).
+            increment: By how much the end of the arm moves along x or y (for X, Y: -918..918
+                millimetres; for Z: -842..842 millimetres; for RX, RY, RZ: -327.67..327.67 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x34.
@@ -91,12 +91,12 @@ class JogCommands(Client):
         *,
         ack_within: float | None = None,
     ) -> None:
-        """Turn the end about an axis.
+        """Turn the end of the arm about an axis.
 
-        Turns the end on the spot about a fixed axis until it is stopped.
+        Turns the end of the arm on the spot about a fixed axis until it is stopped.
 
         Args:
-            axis: A fixed axis about which the end turns (one of RX (1), RY (2), RZ (3)).
+            axis: A fixed axis about which the end of the arm turns (one of RX (1), RY (2), RZ (3)).
             direction: A direction (one of BACKWARD (0), FORWARD (1)).
             speed: Speed in percent of the maximum (1..100 percent).
 

@@ -25,7 +25,7 @@ class MotionCommands(Client):
         return self._send(messages.motion.OverLimitReturnZero(), ack_within)
 
     def set_control_mode(self, mode: ControlMode | int, *, ack_within: float | None = None) -> None:
-        """Set what the arm controls.
+        """Set the control mode.
 
         Sets whether the arm controls positions or torques; with torques it can be moved by hand.
 
@@ -37,7 +37,7 @@ class MotionCommands(Client):
         return self._send(messages.motion.SetControlMode(mode), ack_within)
 
     def get_control_mode(self) -> ControlMode:
-        """Read what the arm controls.
+        """Read the control mode.
 
         Returns: What the arm controls (one of POSITION (0), TORQUE (1)).
         Safety: query. Command id 0x1F.
@@ -175,8 +175,8 @@ class MotionCommands(Client):
         Reports whether the arm is at a target, given as coordinates.
 
         Args:
-            target: Position and orientation of the end (6 numbers (x, y -459..459 millimetres; z
-                -300..542 millimetres; rx, ry, rz -180..180 degrees)).
+            target: Position and orientation of the end of the arm (6 numbers (x, y -459..459
+                millimetres; z -300..542 millimetres; rx, ry, rz -180..180 degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.
@@ -208,7 +208,7 @@ class MotionCommands(Client):
     ) -> None:
         """Set the angle of the null space.
 
-        Moves joint 1 in the null space, while the end stays where it is.
+        Moves joint 1 in the null space, while the end of the arm stays where it is.
 
         Args:
             angle: Deflection of joint 1 in the null space (-90..90 degrees).
@@ -224,9 +224,9 @@ class MotionCommands(Client):
         Reads the angles, the coordinates, and eight further bytes.
 
         Returns: The seven joint angles, base first (j1, j2, j3, j4, j5, j6, j7 -360..360 degrees);
-            Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry, rz
-            -327.68..327.67 degrees); Eight bytes that no source explains (byte_1, byte_2, byte_3,
-            byte_4, byte_5, byte_6, byte_7, byte_8 0..255).
+            Position and orientation of the end of the arm (x, y, z -3276.8..3276.7 millimetres; rx,
+            ry, rz -327.68..327.67 degrees); Eight bytes that no source explains (byte_1, byte_2,
+            byte_3, byte_4, byte_5, byte_6, byte_7, byte_8 0..255).
         Safety: query. Command id 0xD6.
         """
         return self._call(messages.motion.GetQuickMoveInfo())

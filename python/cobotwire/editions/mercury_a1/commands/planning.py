@@ -16,10 +16,10 @@ class PlanningCommands(Client):
     def get_max_speed(self, mode: Planned | int) -> int:
         """Read the highest speed.
 
-        Reads the highest speed of joints or of the end.
+        Reads the highest speed of joints or of the end of the arm.
 
         Args:
-            mode: What a speed or an acceleration belongs to (one of ANGLES (0), COORDS (1)).
+            mode: What a speed or an acceleration applies to (one of ANGLES (0), COORDS (1)).
 
         Returns: Highest speed, in degrees or millimetres per second (0..65535).
         Safety: query. Command id 0x40.
@@ -31,10 +31,10 @@ class PlanningCommands(Client):
     ) -> None:
         """Set the highest speed.
 
-        Sets the highest speed of joints or of the end.
+        Sets the highest speed of joints or of the end of the arm.
 
         Args:
-            mode: What a speed or an acceleration belongs to (one of ANGLES (0), COORDS (1)).
+            mode: What a speed or an acceleration applies to (one of ANGLES (0), COORDS (1)).
             speed: Highest speed of joints (for ANGLES: 1..150 degrees per second; for COORDS:
                 1..200 millimetres per second).
 
@@ -45,10 +45,10 @@ class PlanningCommands(Client):
     def get_max_acc(self, mode: Planned | int) -> int:
         """Read the highest acceleration.
 
-        Reads the highest acceleration of joints or of the end.
+        Reads the highest acceleration of joints or of the end of the arm.
 
         Args:
-            mode: What a speed or an acceleration belongs to (one of ANGLES (0), COORDS (1)).
+            mode: What a speed or an acceleration applies to (one of ANGLES (0), COORDS (1)).
 
         Returns: Highest acceleration, in degrees or millimetres per second squared (0..65535).
         Safety: query. Command id 0x42.
@@ -60,11 +60,11 @@ class PlanningCommands(Client):
     ) -> None:
         """Set the highest acceleration.
 
-        Sets the highest acceleration of joints or of the end.
+        Sets the highest acceleration of joints or of the end of the arm.
 
         Args:
-            mode: What a speed or an acceleration belongs to (one of ANGLES (0), COORDS (1)).
-            acceleration: Highest acceleration of joints, in degrees per second squared (for ANGLES:
+            mode: What a speed or an acceleration applies to (one of ANGLES (0), COORDS (1)).
+            acceleration: Highest acceleration of joints, in degrees per square second (for ANGLES:
                 1..200; for COORDS: 1..400 millimetres per second squared).
 
         Safety: setting. Command id 0x43.
@@ -89,8 +89,8 @@ class PlanningCommands(Client):
         """Set a limit of blended motions.
 
         Args:
-            parameter: A limit of blended motions, or the usual values of all (one of USUAL (0),
-                JOINT_SPEED (1), JOINT_ACCELERATION (2), END_SPEED (3), END_ACCELERATION (4)).
+            parameter: A limit of blended motions, or the initial values of all limits (one of USUAL
+                (0), JOINT_SPEED (1), JOINT_ACCELERATION (2), END_SPEED (3), END_ACCELERATION (4)).
             value: A speed or an acceleration; no source states the unit (0..10000).
 
         Safety: setting. Command id 0x4F.
@@ -100,11 +100,11 @@ class PlanningCommands(Client):
     def get_pos_over(self) -> PositionPairs:
         """Read two positions of each joint.
 
-        Reads two numbers of each joint: where it was sent, and where it is.
+        Reads two positions of each joint: its target, and where it is.
 
-        Returns: For each joint, base first: where it was sent, and where it is (j1_sent,
-            j1_measured, j2_sent, j2_measured, j3_sent, j3_measured, j4_sent, j4_measured, j5_sent,
-            j5_measured, j6_sent, j6_measured, j7_sent, j7_measured -2147483648..2147483647).
+        Returns: For each joint, base first: its target and its position (j1_sent, j1_measured,
+            j2_sent, j2_measured, j3_sent, j3_measured, j4_sent, j4_measured, j5_sent, j5_measured,
+            j6_sent, j6_measured, j7_sent, j7_measured -2147483648..2147483647).
         Safety: query. Command id 0x94.
         """
         return self._call(messages.planning.GetPosOver())
@@ -130,31 +130,31 @@ class PlanningCommands(Client):
     def set_movement_type(
         self, mode: MovementType | int, *, ack_within: float | None = None
     ) -> None:
-        """Set how the end moves.
+        """Set how the end of the arm moves.
 
-        Sets along which path the end moves to coordinates.
+        Sets along which path the end of the arm moves to coordinates.
 
         Args:
-            mode: Along which path the end moves (one of JOINTS (0), LINE (1), BLENDED (2), SPLINE
-                (3), CONTINUOUS (4)).
+            mode: Along which path the end of the arm moves (one of JOINTS (0), LINE (1), BLENDED
+                (2), SPLINE (3), CONTINUOUS (4)).
 
         Safety: setting. Command id 0x87.
         """
         return self._send(messages.planning.SetMovementType(mode), ack_within)
 
     def get_movement_type(self) -> MovementType:
-        """Read how the end moves.
+        """Read how the end of the arm moves.
 
-        Reads along which path the end moves to coordinates.
+        Reads along which path the end of the arm moves to coordinates.
 
-        Returns: Along which path the end moves (one of JOINTS (0), LINE (1), BLENDED (2), SPLINE
-            (3), CONTINUOUS (4)).
+        Returns: Along which path the end of the arm moves (one of JOINTS (0), LINE (1), BLENDED
+            (2), SPLINE (3), CONTINUOUS (4)).
         Safety: query. Command id 0x88.
         """
         return self._call(messages.planning.GetMovementType())
 
     def get_vr_mode(self) -> bool:
-        """Check whether few targets are queued.
+        """Check whether only two targets are queued.
 
         Reads whether only two targets are queued, for remote control.
 
@@ -164,7 +164,7 @@ class PlanningCommands(Client):
         return self._call(messages.planning.GetVrMode())
 
     def set_vr_mode(self, on: bool, *, ack_within: float | None = None) -> None:
-        """Queue few targets.
+        """Set whether only two targets are queued.
 
         Sets whether only two targets are queued, for remote control.
 

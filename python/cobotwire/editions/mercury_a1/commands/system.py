@@ -40,7 +40,7 @@ class SystemCommands(Client):
         return self._call(messages.system.GetRobotType())
 
     def get_atom_modify_version(self) -> int:
-        """Read the revision of the end's firmware.
+        """Read the revision of the firmware at the end of the arm.
 
         Returns: Revision of a version (0..255).
         Safety: query. Command id 0x06.
@@ -51,9 +51,9 @@ class SystemCommands(Client):
         """Read why the arm did not move.
 
         Returns: Why the arm did not move. 0: no error; 1 to 7: joint n is beyond its limit; 32: no
-            inverse solution; the end is near the limit of its reach; 33: no adjacent solution for a
-            straight line; 34: the speeds cannot be blended; 35: no adjacent solution in the null
-            space; 36: a singular position; leave it with send_angles (0..255).
+            inverse solution; the end of the arm is near the limit of its reach; 33: no adjacent
+            solution for a straight line; 34: the speeds cannot be blended; 35: no adjacent solution
+            in the null space; 36: a singular position; leave it with send_angles (0..255).
         Safety: query. Command id 0x07.
         """
         return self._call(messages.system.GetErrorInformation())
@@ -68,7 +68,7 @@ class SystemCommands(Client):
         return self._send(messages.system.ClearErrorInformation(), ack_within)
 
     def get_atom_version(self) -> float:
-        """Read the version of the end's firmware.
+        """Read the version of the firmware at the end of the arm.
 
         Returns: Version of the firmware, such as 1.0 (0..25.5).
         Safety: query. Command id 0x09.
@@ -116,7 +116,7 @@ class SystemCommands(Client):
     def get_comm_error_counts(self, joint: int, kind: ErrorKind | int) -> int:
         """Count communication errors.
 
-        Reads how often the communication with a joint or with the end failed.
+        Reads how often the communication with a joint or with the end of the arm failed.
 
         Args:
             joint: Joint number; 1 is the base, 7 the flange (1..7).

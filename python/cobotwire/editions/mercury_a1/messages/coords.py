@@ -48,7 +48,7 @@ class SendCoordReply(Reply[None], to=SendCoord, wire=(255, "status")):
 
 
 class SendCoords(Request[None], command="send_coords"):
-    """Send the end to coordinates."""
+    """Send all coordinates."""
 
     coords: Sequence[float]
     speed: int

@@ -12,7 +12,7 @@ from ..values import Coords
 
 
 class SetToolReference(Request[None], command="set_tool_reference"):
-    """Set the tool."""
+    """Set the tool reference."""
 
     coords: Sequence[float]
 
@@ -24,7 +24,7 @@ class SetToolReferenceReply(Reply[None], to=SetToolReference, wire=(255, "status
 
 
 class GetToolReference(Request[Coords], command="get_tool_reference"):
-    """Read the tool."""
+    """Read the tool reference."""
 
 
 class GetToolReferenceReply(Reply[Coords], to=GetToolReference):
@@ -34,7 +34,7 @@ class GetToolReferenceReply(Reply[Coords], to=GetToolReference):
 
 
 class SetWorldReference(Request[None], command="set_world_reference"):
-    """Set the world."""
+    """Set the world reference."""
 
     coords: Sequence[float]
 
@@ -46,7 +46,7 @@ class SetWorldReferenceReply(Reply[None], to=SetWorldReference, wire=(255, "stat
 
 
 class GetWorldReference(Request[Coords], command="get_world_reference"):
-    """Read the world."""
+    """Read the world reference."""
 
 
 class GetWorldReferenceReply(Reply[Coords], to=GetWorldReference):
@@ -56,7 +56,7 @@ class GetWorldReferenceReply(Reply[Coords], to=GetWorldReference):
 
 
 class SetReferenceFrame(Request[None], command="set_reference_frame"):
-    """Choose the frame of coordinates."""
+    """Set the reference frame."""
 
     frame: ReferenceFrame | int
 
@@ -68,7 +68,7 @@ class SetReferenceFrameReply(Reply[None], to=SetReferenceFrame, wire=(255, "stat
 
 
 class GetReferenceFrame(Request[ReferenceFrame], command="get_reference_frame"):
-    """Read the frame of coordinates."""
+    """Read the reference frame."""
 
 
 class GetReferenceFrameReply(Reply[ReferenceFrame], to=GetReferenceFrame):
@@ -78,7 +78,7 @@ class GetReferenceFrameReply(Reply[ReferenceFrame], to=GetReferenceFrame):
 
 
 class SetEndType(Request[None], command="set_end_type"):
-    """Choose the point of coordinates."""
+    """Set the end type."""
 
     end: EndType | int
 
@@ -90,7 +90,7 @@ class SetEndTypeReply(Reply[None], to=SetEndType, wire=(255, "status")):
 
 
 class GetEndType(Request[EndType], command="get_end_type"):
-    """Read the point of coordinates."""
+    """Read the end type."""
 
 
 class GetEndTypeReply(Reply[EndType], to=GetEndType):

@@ -9,7 +9,7 @@ from ..values import GetDigitalInputsResult
 
 
 class GetDigitalInputs(Request[GetDigitalInputsResult], command="get_digital_inputs"):
-    """Read the inputs of the end."""
+    """Read the inputs at the end of the arm."""
 
 
 class GetDigitalInputsReply(
@@ -23,7 +23,7 @@ class GetDigitalInputsReply(
 
 
 class SetDigitalOutput(Request[None], command="set_digital_output"):
-    """Set an output of the end."""
+    """Set an output at the end of the arm."""
 
     pin: int
     high: bool
@@ -36,7 +36,7 @@ class SetDigitalOutputReply(Reply[None], to=SetDigitalOutput, wire=(255, "status
 
 
 class GetDigitalInput(Request[bool], command="get_digital_input"):
-    """Read an input of the end."""
+    """Read an input at the end of the arm."""
 
     pin: int
 

@@ -65,7 +65,7 @@ class JogIncrementCoordReply(Reply[None], to=JogIncrementCoord, wire=(255, "stat
 
 
 class JogRpy(Request[None], command="jog_rpy"):
-    """Turn the end about an axis."""
+    """Turn the end of the arm about an axis."""
 
     axis: RotationAxis | int
     direction: Direction | int

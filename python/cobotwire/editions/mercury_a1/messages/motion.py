@@ -22,7 +22,7 @@ class OverLimitReturnZeroReply(Reply[None], to=OverLimitReturnZero, wire=(255, "
 
 
 class SetControlMode(Request[None], command="set_control_mode"):
-    """Set what the arm controls."""
+    """Set the control mode."""
 
     mode: ControlMode | int
 
@@ -34,7 +34,7 @@ class SetControlModeReply(Reply[None], to=SetControlMode, wire=(255, "status")):
 
 
 class GetControlMode(Request[ControlMode], command="get_control_mode"):
-    """Read what the arm controls."""
+    """Read the control mode."""
 
 
 class GetControlModeReply(Reply[ControlMode], to=GetControlMode):

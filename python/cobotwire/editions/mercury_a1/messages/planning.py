@@ -117,7 +117,7 @@ class GetPosOverShootReply(Reply[float], to=GetPosOverShoot):
 
 
 class SetMovementType(Request[None], command="set_movement_type"):
-    """Set how the end moves."""
+    """Set how the end of the arm moves."""
 
     mode: MovementType | int
 
@@ -129,7 +129,7 @@ class SetMovementTypeReply(Reply[None], to=SetMovementType, wire=(255, "status")
 
 
 class GetMovementType(Request[MovementType], command="get_movement_type"):
-    """Read how the end moves."""
+    """Read how the end of the arm moves."""
 
 
 class GetMovementTypeReply(Reply[MovementType], to=GetMovementType):
@@ -139,7 +139,7 @@ class GetMovementTypeReply(Reply[MovementType], to=GetMovementType):
 
 
 class GetVrMode(Request[bool], command="get_vr_mode"):
-    """Check whether few targets are queued."""
+    """Check whether only two targets are queued."""
 
 
 class GetVrModeReply(Reply[bool], to=GetVrMode):
@@ -149,7 +149,7 @@ class GetVrModeReply(Reply[bool], to=GetVrMode):
 
 
 class SetVrMode(Request[None], command="set_vr_mode"):
-    """Queue few targets."""
+    """Set whether only two targets are queued."""
 
     on: bool
 

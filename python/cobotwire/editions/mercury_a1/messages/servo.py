@@ -158,7 +158,7 @@ class GetCollisionModeReply(Reply[bool], to=GetCollisionMode):
 
 
 class SetCollisionThreshold(Request[None], command="set_collision_threshold"):
-    """Set when a joint notices a collision."""
+    """Set the collision threshold of a joint."""
 
     joint: int
     threshold: int = 100
@@ -171,7 +171,7 @@ class SetCollisionThresholdReply(Reply[None], to=SetCollisionThreshold, wire=(25
 
 
 class GetCollisionThreshold(Request[JointPercents], command="get_collision_threshold"):
-    """Read when the joints notice a collision."""
+    """Read the collision thresholds."""
 
 
 class GetCollisionThresholdReply(Reply[JointPercents], to=GetCollisionThreshold):

@@ -40,7 +40,7 @@ class GetRobotTypeReply(Reply[int], to=GetRobotType):
 
 
 class GetAtomModifyVersion(Request[int], command="get_atom_modify_version"):
-    """Read the revision of the end's firmware."""
+    """Read the revision of the firmware at the end of the arm."""
 
 
 class GetAtomModifyVersionReply(Reply[int], to=GetAtomModifyVersion):
@@ -71,7 +71,7 @@ class ClearErrorInformationReply(Reply[None], to=ClearErrorInformation, wire=(25
 
 
 class GetAtomVersion(Request[float], command="get_atom_version"):
-    """Read the version of the end's firmware."""
+    """Read the version of the firmware at the end of the arm."""
 
 
 class GetAtomVersionReply(Reply[float], to=GetAtomVersion):

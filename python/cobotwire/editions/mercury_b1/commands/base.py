@@ -16,12 +16,10 @@ class BaseCommands(Client):
     """Coordinates of both arms in one frame, at the waist."""
 
     def get_base_coords(self) -> Coords:
-        """Read the coordinates from the waist.
+        """Read the coordinates in the frame of the waist.
 
-        Reads the position and orientation of the end in the frame of the waist.
-
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
-            rz -327.68..327.67 degrees).
+        Returns: Position and orientation of the end of the arm (x, y, z -3276.8..3276.7
+            millimetres; rx, ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0xF0.
         """
         return self._call(messages.base.GetBaseCoords())
@@ -29,9 +27,9 @@ class BaseCommands(Client):
     def send_base_coord(
         self, axis: Axis | int, coord: float, speed: int, *, ack_within: float | None = None
     ) -> None:
-        """Send one coordinate from the waist.
+        """Send one coordinate in the frame of the waist.
 
-        Moves the end so that one coordinate in the frame of the waist has a new value.
+        Moves the end of the arm so that one coordinate in the frame of the waist has a new value.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
@@ -46,14 +44,12 @@ class BaseCommands(Client):
     def send_base_coords(
         self, coords: Sequence[float], speed: int, *, ack_within: float | None = None
     ) -> None:
-        """Send the end to coordinates from the waist.
-
-        Moves the end to a position and orientation in the frame of the waist.
+        """Send all coordinates in the frame of the waist.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetres; y
-                -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz -180..180
-                degrees)).
+            coords: Position and orientation of the end of the arm (6 numbers (x -351.1..566.9
+                millimetres; y -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz
+                -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0xF2.
@@ -61,14 +57,14 @@ class BaseCommands(Client):
         return self._send(messages.base.SendBaseCoords(coords, speed), ack_within)
 
     def is_in_position_base_coords(self, target: Sequence[float]) -> bool:
-        """Check whether a pose from the waist is reached.
+        """Check whether a pose in the frame of the waist is reached.
 
         Reports whether the arm is at a target, given as coordinates in the frame of the waist.
 
         Args:
-            target: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetres; y
-                -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz -180..180
-                degrees)).
+            target: Position and orientation of the end of the arm (6 numbers (x -351.1..566.9
+                millimetres; y -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz
+                -180..180 degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.
@@ -85,7 +81,7 @@ class BaseCommands(Client):
     ) -> None:
         """Jog along an axis of the waist.
 
-        Moves the end along or about one axis of the waist until it is stopped.
+        Moves the end of the arm along or about one axis of the waist until it is stopped.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
@@ -101,12 +97,12 @@ class BaseCommands(Client):
     ) -> None:
         """Move along an axis of the waist by a distance.
 
-        Moves the end along or about one axis of the waist by a distance or an angle.
+        Moves the end of the arm along or about one axis of the waist by a distance or an angle.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
-            increment: By how much the end moves along x or y (for X, Y: -918..918 millimetres; for
-                Z: -918..918 millimetres; for RX, RY, RZ: -327.67..327.67 degrees).
+            increment: By how much the end of the arm moves along x or y (for X, Y: -918..918
+                millimetres; for Z: -918..918 millimetres; for RX, RY, RZ: -327.67..327.67 degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x37.
@@ -121,12 +117,12 @@ class BaseCommands(Client):
         *,
         ack_within: float | None = None,
     ) -> None:
-        """Turn the end about an axis of the waist.
+        """Turn the end of the arm about an axis of the waist.
 
-        Turns the end on the spot about a fixed axis of the waist until it is stopped.
+        Turns the end of the arm on the spot about a fixed axis of the waist until it is stopped.
 
         Args:
-            axis: A fixed axis about which the end turns (one of RX (1), RY (2), RZ (3)).
+            axis: A fixed axis about which the end of the arm turns (one of RX (1), RY (2), RZ (3)).
             direction: A direction (one of BACKWARD (0), FORWARD (1)).
             speed: Speed in percent of the maximum (1..100 percent).
 

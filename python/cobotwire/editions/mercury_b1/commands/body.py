@@ -13,7 +13,7 @@ class BodyCommands(Client):
     """The joints 11 and 12 of the head and neck and 13 of the waist, which the right arm drives."""
 
     def set_servo_cw(self, joint: int, angle: float, *, ack_within: float | None = None) -> None:
-        """Set when a head joint is at its target.
+        """Set the permitted deviation of a head joint.
 
         Args:
             joint: Joint number of the head (one of 11, 12).
@@ -24,7 +24,7 @@ class BodyCommands(Client):
         return self._send(messages.body.SetServoCw(joint, angle), ack_within)
 
     def get_servo_cw(self, joint: int) -> float:
-        """Read when a head joint is at its target.
+        """Read the permitted deviation of a head joint.
 
         Args:
             joint: Joint number of the head (one of 11, 12).
@@ -37,7 +37,7 @@ class BodyCommands(Client):
     def clear_waist_queue(self, *, ack_within: float | None = None) -> None:
         """Discard the targets of head and waist.
 
-        Discards the targets of the joints 11 to 13, and stops these.
+        Discards the targets of the joints 11 to 13, and stops these joints.
 
         Safety: motion. Command id 0x0D.
         """

@@ -26,7 +26,7 @@ class CoordsCommands(Client):
     ) -> None:
         """Send one coordinate.
 
-        Moves the end so that one coordinate has a new value.
+        Moves the end of the arm so that one coordinate has a new value.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
@@ -41,12 +41,12 @@ class CoordsCommands(Client):
     def send_coords(
         self, coords: Sequence[float], speed: int, *, ack_within: float | None = None
     ) -> None:
-        """Send the end to coordinates.
+        """Send all coordinates.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetres; y
-                -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz -180..180
-                degrees)).
+            coords: Position and orientation of the end of the arm (6 numbers (x -351.1..566.9
+                millimetres; y -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz
+                -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x25.
@@ -65,9 +65,9 @@ class CoordsCommands(Client):
         """Move on an arc with a radius.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetres; y
-                -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz -180..180
-                degrees)).
+            coords: Position and orientation of the end of the arm (6 numbers (x -351.1..566.9
+                millimetres; y -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz
+                -180..180 degrees)).
             radius: Radius of an arc (0..655.35 millimetres).
             speed: Speed in percent of the maximum (1..100 percent).
             arc: Which of two arcs with the same radius (one of USUAL (0), MAJOR (1), MINOR (2)).
@@ -79,12 +79,12 @@ class CoordsCommands(Client):
     def solve_inv_kinematics(self, coords: Sequence[float], angles: Sequence[float]) -> Angles:
         """Calculate angles.
 
-        Calculates the angles near others that bring the end to coordinates.
+        Calculates the joint angles, near given ones, that bring the end of the arm to coordinates.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetres; y
-                -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz -180..180
-                degrees)).
+            coords: Position and orientation of the end of the arm (6 numbers (x -351.1..566.9
+                millimetres; y -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz
+                -180..180 degrees)).
             angles: The seven joint angles, base first (7 numbers (j1, j3, j5, j7 -165..165 degrees;
                 j2 -50..120 degrees; j4 -165..1 degrees; j6 -75..255 degrees)).
 

@@ -68,9 +68,9 @@ class MotionCommands(Client):
         Reports whether the arm is at a target, given as coordinates.
 
         Args:
-            target: Position and orientation of the end (6 numbers (x -351.1..566.9 millimetres; y
-                -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz -180..180
-                degrees)).
+            target: Position and orientation of the end of the arm (6 numbers (x -351.1..566.9
+                millimetres; y -645.9..645.9 millimetres; z -262.9..655.1 millimetres; rx, ry, rz
+                -180..180 degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.

@@ -131,15 +131,13 @@ class ServoCommands(Client):
     def set_collision_threshold(
         self, joint: int, threshold: int = 100, *, ack_within: float | None = None
     ) -> None:
-        """Set when a joint notices a collision.
-
-        Sets how strong a collision one joint must be to stop the arm.
+        """Set the collision threshold of a joint.
 
         Args:
             joint: Joint number; 1 to 7 are the arm, 11 and 12 head and neck, 13 the waist (one of
                 1, 2, 3, 4, 5, 6, 7, 11, 12, 13).
-            threshold: How strong a collision stops the arm; a small share stops it early (50..250
-                percent; default: 100).
+            threshold: How strong a collision must be to stop the arm; a low value stops it early
+                (50..250 percent; default: 100).
 
         Safety: setting. Command id 0x75.
         """
@@ -155,7 +153,7 @@ class ServoCommands(Client):
         Args:
             joint: Joint number; 1 to 7 are the arm, 11 and 12 head and neck, 13 the waist (one of
                 1, 2, 3, 4, 5, 6, 7, 11, 12, 13).
-            compensation: How much friction is compensated; a joint with a large share is easy to
+            compensation: How much friction is compensated; a joint with a high value is easy to
                 move (0..250 percent; default: 100).
 
         Safety: setting. Command id 0x77.

@@ -9,7 +9,7 @@ from ..enums import ServoDataMode
 
 
 class SetServoCw(Request[None], command="set_servo_cw"):
-    """Set when a head joint is at its target."""
+    """Set the permitted deviation of a head joint."""
 
     joint: int
     angle: float
@@ -22,7 +22,7 @@ class SetServoCwReply(Reply[None], to=SetServoCw, wire=(255, "status")):
 
 
 class GetServoCw(Request[float], command="get_servo_cw"):
-    """Read when a head joint is at its target."""
+    """Read the permitted deviation of a head joint."""
 
     joint: int
 

@@ -24,7 +24,8 @@ class CoordsCommands(Client):
     ) -> None:
         """Send one coordinate.
 
-        Moves the end so that one coordinate has a new value; the other five stay the same.
+        Moves the end of the arm so that one coordinate has a new value; the other five stay the
+        same.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
@@ -50,8 +51,8 @@ class CoordsCommands(Client):
         this; no source states it.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y -310..310 millimetres; z
-                -140..480 millimetres; rx, ry, rz -180..180 degrees)).
+            coords: Position and orientation of the end of the arm (6 numbers (x, y -310..310
+                millimetres; z -140..480 millimetres; rx, ry, rz -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
             mode: The path to the target. Left out: that of set_movement_type (one of ANGULAR (0),
                 LINEAR (1), UNEXPLAINED (2); optional).
@@ -63,11 +64,12 @@ class CoordsCommands(Client):
     def get_angles_coords(self) -> GetAnglesCoordsResult:
         """Read the joint angles and the coordinates.
 
-        Reads the angles of all seven joints, and position and orientation of the end, at once.
+        Reads the angles of all seven joints, and the position and orientation of the end of the
+        arm, at once.
 
         Returns: The seven joint angles, base first (j1, j2, j3, j4, j5, j6, j7 -181..181 degrees);
-            Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry, rz
-            -327.68..327.67 degrees).
+            Position and orientation of the end of the arm (x, y, z -3276.8..3276.7 millimetres; rx,
+            ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0xD5.
         """
         return self._call(messages.coords.GetAnglesCoords())

@@ -33,9 +33,9 @@ class JogCommands(Client):
     def jog_coord(self, axis: Axis | int, direction: TravelDirection | int, speed: int) -> None:
         """Jog a coordinate.
 
-        Moves the end along or about one axis, at a speed in percent of the maximum, until stop ends
-        it. The motion continues by itself; if stop is lost in transit, the arm keeps moving. Check
-        with is_moving afterwards.
+        Moves the end of the arm along or about one axis, at a speed in percent of the maximum,
+        until stop ends it. The motion continues by itself; if stop is lost in transit, the arm
+        keeps moving. Check with is_moving afterwards.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).

@@ -156,7 +156,7 @@ class MotionCommands(Client):
     def set_movement_type(self, mode: MovementType | int) -> None:
         """Set the path to coordinates.
 
-        Sets the path of the end to a coordinate target.
+        Sets the path of the end of the arm to a coordinate target.
 
         Args:
             mode: The path to a coordinate target that is sent without a mode (one of ANGULAR (0),
@@ -192,8 +192,8 @@ class MotionCommands(Client):
         """Turn the elbow.
 
         Turns the arm within its null space to a deflection angle in degrees, at a speed in percent
-        of the maximum. Joints move although the end may stay where it is; keep clear of the elbow.
-        No source limits the angle.
+        of the maximum. Joints move although the end of the arm may stay where it is; keep clear of
+        the elbow. No source limits the angle.
 
         Args:
             angle: The deflection angle; the maker calls it the angle of joint 1 (-327.68..327.67

@@ -14,9 +14,9 @@ class IoCommands(Client):
     """Digital inputs and outputs, the button, and the colour of the light."""
 
     def set_tool_out_io_state(self, pin: int, high: bool = True) -> None:
-        """Set a pin of the end.
+        """Set a pin at the end of the arm.
 
-        Sets the level of an output pin of the end.
+        Sets the level of an output pin at the end of the arm.
 
         Args:
             pin: Pin number at the end of the arm (one of 1, 2).
@@ -27,9 +27,9 @@ class IoCommands(Client):
         return self._send(messages.io.SetToolOutIoState(pin, high))
 
     def get_tool_in_io_state(self, pin: int) -> bool:
-        """Read a pin of the end.
+        """Read a pin at the end of the arm.
 
-        Reads the level of an input pin of the end.
+        Reads the level of an input pin at the end of the arm.
 
         Args:
             pin: Pin number at the end of the arm (one of 1, 2).
@@ -68,7 +68,7 @@ class IoCommands(Client):
     def set_color(self, red: int, green: int, blue: int) -> None:
         """Set the colour of the light.
 
-        Sets the colour of the light at the end by its three channels, each 0 to 255.
+        Sets the colour of the light at the end of the arm by its three channels, each 0 to 255.
 
         Args:
             red: One channel of the light; 0 is dark, 255 full (0..255).
@@ -82,7 +82,7 @@ class IoCommands(Client):
     def set_tool_led_color(self, red: int, green: int, blue: int) -> None:
         """Set the colour of the light (the maker's name).
 
-        Sets the colour of the light at the end by its three channels, each 0 to 255.
+        Sets the colour of the light at the end of the arm by its three channels, each 0 to 255.
 
         Args:
             red: One channel of the light; 0 is dark, 255 full (0..255).
@@ -96,7 +96,8 @@ class IoCommands(Client):
     def is_tool_btn_clicked(self, button: ToolButton | int = 1) -> IsToolBtnClickedResult:
         """Check whether a button is pressed.
 
-        Reports whether a button at the end is pressed; for ALL, whether each of the three is.
+        Reports whether a button at the end of the arm is pressed; for ALL, whether each of the
+        three is.
 
         Args:
             button: A button at the end of the arm (one of ATOM (1), RED (2), BLUE (3), ALL (254);

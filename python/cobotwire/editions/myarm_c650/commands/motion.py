@@ -10,7 +10,7 @@ from ..values import Angles, Coords
 
 
 class MotionCommands(Client):
-    """The joints' positions, and the position of the end."""
+    """The joints' positions, and the position of the end of the arm."""
 
     def get_angles(self) -> Angles:
         """Read the joint angles.
@@ -49,8 +49,8 @@ class MotionCommands(Client):
     def get_coords(self) -> Coords:
         """Read the coordinates.
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
-            rz -327.68..327.67 degrees).
+        Returns: Position and orientation of the end of the arm (x, y, z -3276.8..3276.7
+            millimetres; rx, ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.motion.GetCoords())
@@ -58,8 +58,8 @@ class MotionCommands(Client):
     def get_joints_coord(self) -> Coords:
         """Read the coordinates (the maker's name).
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
-            rz -327.68..327.67 degrees).
+        Returns: Position and orientation of the end of the arm (x, y, z -3276.8..3276.7
+            millimetres; rx, ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.motion.GetJointsCoord())

@@ -184,7 +184,7 @@ class ParametersCommands(Client):
     def restore_servo_system_param(self, servo: int) -> None:
         """Restore a servo's parameters.
 
-        It overwrites the servo's current parameters. No source says by which values; support the
+        It overwrites the servo's current parameters. No source says with which values; support the
         arm first.
 
         Args:

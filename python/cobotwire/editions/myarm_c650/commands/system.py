@@ -39,7 +39,7 @@ class SystemCommands(Client):
         return self._call(messages.system.GetRobotFirmwareVersion())
 
     def get_robot_tool_modified_version(self) -> int:
-        """Read the revision of the end's firmware.
+        """Read the revision of the firmware at the end of the arm.
 
         Returns: Revision of the firmware (0..255).
         Safety: query. Command id 0x04.
@@ -47,7 +47,7 @@ class SystemCommands(Client):
         return self._call(messages.system.GetRobotToolModifiedVersion())
 
     def get_robot_tool_firmware_version(self) -> float:
-        """Read the version of the end's firmware.
+        """Read the version of the firmware at the end of the arm.
 
         Returns: Version of the firmware, such as 1.3 (0..25.5).
         Safety: query. Command id 0x09.

@@ -10,14 +10,14 @@ from ..values import IsToolBtnClickedResult
 
 
 class SetToolOutIoState(Request[None], command="set_tool_out_io_state"):
-    """Set a pin of the end."""
+    """Set a pin at the end of the arm."""
 
     pin: int
     high: bool = True
 
 
 class GetToolInIoState(Request[bool], command="get_tool_in_io_state"):
-    """Read a pin of the end."""
+    """Read a pin at the end of the arm."""
 
     pin: int
 

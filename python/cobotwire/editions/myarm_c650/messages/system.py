@@ -39,7 +39,7 @@ class GetRobotFirmwareVersionReply(Reply[float], to=GetRobotFirmwareVersion):
 
 
 class GetRobotToolModifiedVersion(Request[int], command="get_robot_tool_modified_version"):
-    """Read the revision of the end's firmware."""
+    """Read the revision of the firmware at the end of the arm."""
 
 
 class GetRobotToolModifiedVersionReply(Reply[int], to=GetRobotToolModifiedVersion):
@@ -49,7 +49,7 @@ class GetRobotToolModifiedVersionReply(Reply[int], to=GetRobotToolModifiedVersio
 
 
 class GetRobotToolFirmwareVersion(Request[float], command="get_robot_tool_firmware_version"):
-    """Read the version of the end's firmware."""
+    """Read the version of the firmware at the end of the arm."""
 
 
 class GetRobotToolFirmwareVersionReply(Reply[float], to=GetRobotToolFirmwareVersion):

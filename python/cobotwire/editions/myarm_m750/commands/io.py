@@ -48,7 +48,7 @@ class IoCommands(Client):
     def is_tool_btn_clicked(self) -> bool:
         """Check whether a button is pressed.
 
-        Reports whether the button at the end is pressed.
+        Reports whether the button at the end of the arm is pressed.
 
         Returns: True if the button is pressed.
         Safety: query. Command id 0x6B.

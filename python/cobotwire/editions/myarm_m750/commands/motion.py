@@ -13,7 +13,7 @@ from .. import messages
 
 
 class MotionCommands(Client):
-    """The joints' positions, and the position of the end."""
+    """The joints' positions, and the position of the end of the arm."""
 
     get_angles = shared(Base.get_angles)
     get_joints_angle = shared(Base.get_joints_angle)

@@ -16,33 +16,33 @@ class BaseCommands(Client):
     """Coordinates that refer to the base of the robot, and collisions of its arms."""
 
     def single_to_base_coords(self, coords: Sequence[float], arm: ArmSide | int) -> Coords:
-        """Convert an arm's coordinates to the base.
+        """Convert an arm's coordinates to the frame of the base.
 
         Converts coordinates of one arm to coordinates that refer to the base of the robot.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
-                millimetres; rx, ry, rz -327.68..327.67 degrees)).
+            coords: Position and orientation of the end of the arm (6 numbers (x, y, z
+                -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees)).
             arm: One of the arms, as an argument (one of LEFT_ARM (0), RIGHT_ARM (1)).
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
-            rz -327.68..327.67 degrees).
+        Returns: Position and orientation of the end of the arm (x, y, z -3276.8..3276.7
+            millimetres; rx, ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0xF0.
         """
         return self._call(messages.base.SingleToBaseCoords(coords, arm))
 
     def base_to_single_coords(self, coords: Sequence[float], arm: ArmSide | int) -> Coords:
-        """Convert coordinates of the base to an arm.
+        """Convert coordinates in the frame of the base to an arm's.
 
         Converts coordinates that refer to the base of the robot to coordinates of one arm.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
-                millimetres; rx, ry, rz -327.68..327.67 degrees)).
+            coords: Position and orientation of the end of the arm (6 numbers (x, y, z
+                -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees)).
             arm: One of the arms, as an argument (one of LEFT_ARM (0), RIGHT_ARM (1)).
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
-            rz -327.68..327.67 degrees).
+        Returns: Position and orientation of the end of the arm (x, y, z -3276.8..3276.7
+            millimetres; rx, ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0xF1.
         """
         return self._call(messages.base.BaseToSingleCoords(coords, arm))
@@ -64,30 +64,30 @@ class BaseCommands(Client):
         return self._call(messages.base.Collision(left, right))
 
     def get_base_coord(self) -> Coords:
-        """Read an arm's coordinates in the base.
+        """Read an arm's coordinates in the frame of the base.
 
-        Reads the position and orientation of an arm's end, relative to the base of the robot.
+        Reads the position and orientation of the end of an arm, relative to the base of the robot.
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
-            rz -327.68..327.67 degrees).
+        Returns: Position and orientation of the end of the arm (x, y, z -3276.8..3276.7
+            millimetres; rx, ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0xF3.
         """
         return self._call(messages.base.GetBaseCoord())
 
     def get_base_coords(self) -> GetBaseCoordsResult:
-        """Read both arms' coordinates in the base.
+        """Read both arms' coordinates in the frame of the base.
 
         Reads the position and orientation of both arms' ends, relative to the base of the robot.
 
-        Returns: Position and orientation of the left arm's end (x, y, z -3276.8..3276.7
-            millimetres; rx, ry, rz -327.68..327.67 degrees); Position and orientation of the right
-            arm's end (x, y, z -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees).
+        Returns: Position and orientation of the end of the left arm (x, y, z -3276.8..3276.7
+            millimetres; rx, ry, rz -327.68..327.67 degrees); Position and orientation of the end of
+            the right arm (x, y, z -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0xF4.
         """
         return self._call(messages.base.GetBaseCoords())
 
     def write_base_coord(self, axis: Axis | int, coord: float, speed: int) -> None:
-        """Send one coordinate in the base.
+        """Send one coordinate in the frame of the base.
 
         Moves an arm so that one coordinate, relative to the base of the robot, has a new value.
         Send it to LEFT or RIGHT.
@@ -103,14 +103,14 @@ class BaseCommands(Client):
         return self._send(messages.base.WriteBaseCoord(axis, coord, speed))
 
     def write_base_coords(self, coords: Sequence[float], speed: int) -> None:
-        """Send all coordinates in the base.
+        """Send all coordinates in the frame of the base.
 
         Moves an arm to a position and orientation relative to the base of the robot. Send it to
         LEFT or RIGHT.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
-                millimetres; rx, ry, rz -327.68..327.67 degrees)).
+            coords: Position and orientation of the end of the arm (6 numbers (x, y, z
+                -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees)).
             speed: Speed of a motion in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0xF6.
@@ -134,7 +134,7 @@ class BaseCommands(Client):
         return self._send(messages.base.JogIncCoord(axis, increment, speed))
 
     def collision_switch(self, watched: bool) -> None:
-        """Turn the check for collisions on or off.
+        """Turn the collision check on or off.
 
         Turns the check for collisions of the arms on or off; it is off after the start.
 
@@ -146,7 +146,7 @@ class BaseCommands(Client):
         return self._send(messages.base.CollisionSwitch(watched))
 
     def is_collision_on(self) -> bool:
-        """Check whether collisions are watched for.
+        """Check whether the collision check is on.
 
         Returns: True if the check is on.
         Safety: query. Command id 0xF9.

@@ -18,11 +18,11 @@ class CoordsCommands(Client):
     def get_coords(self) -> Coords:
         """Read the coordinates.
 
-        Reads the position and orientation of the end, in the selected reference frame and for the
-        selected end type.
+        Reads the position and orientation of the end of the arm, in the selected reference frame
+        and for the selected end type.
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
-            rz -327.68..327.67 degrees).
+        Returns: Position and orientation of the end of the arm (x, y, z -3276.8..3276.7
+            millimetres; rx, ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.coords.GetCoords())
@@ -30,8 +30,8 @@ class CoordsCommands(Client):
     def send_coord(self, axis: Axis | int, coord: float, speed: int) -> None:
         """Send one coordinate.
 
-        Moves the end so that one coordinate has a new value; the other five stay the same. The
-        maker's library checks no coordinate.
+        Moves the end of the arm so that one coordinate has a new value; the other five stay the
+        same. The maker's library checks no coordinate.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
@@ -47,8 +47,8 @@ class CoordsCommands(Client):
         """Send all coordinates.
 
         Args:
-            coords: Position and orientation of an arm's end (6 numbers (x 0..250 millimetres; y
-                -260..260 millimetres; z 0..480 millimetres; rx, ry, rz -180..180 degrees)).
+            coords: Position and orientation of the end of an arm (6 numbers (x 0..250 millimetres;
+                y -260..260 millimetres; z 0..480 millimetres; rx, ry, rz -180..180 degrees)).
             speed: Speed in percent of the maximum (0..100 percent).
             mode: The path to a coordinate target (one of ANGULAR (0), LINEAR (1), UNEXPLAINED (2)).
 

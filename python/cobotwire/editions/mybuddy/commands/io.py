@@ -22,7 +22,7 @@ class IoCommands(Client):
         Makes a pin of the Atom an input or an output.
 
         Args:
-            pin: Pin number on the arm's end (1..5).
+            pin: Pin number at the end of the arm (1..5).
             mode: What a pin is used for (one of INPUT (0), OUTPUT (1)).
 
         Safety: setting. Command id 0x60.
@@ -35,7 +35,7 @@ class IoCommands(Client):
         Sets the level of an output pin of the Atom.
 
         Args:
-            pin: Pin number on the arm's end (1..5).
+            pin: Pin number at the end of the arm (1..5).
             high: True is the high level (True or False).
 
         Safety: setting. Command id 0x61.
@@ -48,7 +48,7 @@ class IoCommands(Client):
         Reads the level of an input pin of the Atom.
 
         Args:
-            pin: Pin number on the arm's end (1..5).
+            pin: Pin number at the end of the arm (1..5).
 
         Returns: True is the high level.
         Safety: query. Command id 0x62.
@@ -56,12 +56,12 @@ class IoCommands(Client):
         return self._call(messages.io.GetDigitalInput(pin))
 
     def set_pwm_output(self, channel: int, frequency: int, duty: int) -> None:
-        """Set a PWM output of the arm's end.
+        """Set a PWM output at the end of the arm.
 
-        Outputs pulses on a pin of the arm's end, with a frequency and a duty cycle.
+        Outputs pulses on a pin at the end of the arm, with a frequency and a duty cycle.
 
         Args:
-            channel: Pin number on the arm's end (1..5).
+            channel: Pin number at the end of the arm (1..5).
             frequency: Frequency of the pulses; the maker says 0 for 1 MHz and 1 for 10 MHz
                 (0..32767).
             duty: Duty cycle of the pulses (0..100 percent).

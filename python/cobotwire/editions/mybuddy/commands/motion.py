@@ -161,23 +161,21 @@ class MotionCommands(Client):
     def get_coord(self, axis: Axis | int) -> int:
         """Read a coordinate.
 
-        Reads one coordinate of an arm's end, as it is on the wire.
+        Reads one coordinate of the end of an arm, as its raw value.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
 
-        Returns: A coordinate as it is on the wire: tenths of a millimetre for X, Y and Z,
-            hundredths of a degree for RX, RY and RZ. The waist reports hundredths of a degree
-            (-32768..32767).
+        Returns: The raw value of a coordinate: tenths of a millimetre for X, Y and Z, hundredths of
+            a degree for RX, RY and RZ. The waist reports hundredths of a degree (-32768..32767).
         Safety: query. Command id 0x2D.
         """
         return self._call(messages.motion.GetCoord(axis))
 
     def send_angles_auto(self, angles: Sequence[float], time: int) -> None:
-        """Send all joints to angles in a time.
+        """Send all joints to angles within a time.
 
-        Moves all six joints of an arm to angles in degrees, within a time. No source states the
-        unit of the time; a small one may be a fast motion.
+        No source states the unit of the time; a small one may be a fast motion.
 
         Args:
             angles: The six joint angles of an arm, base first (6 numbers (j1, j2, j3, j4, j5
@@ -210,7 +208,8 @@ class MotionCommands(Client):
         """Set the path to coordinates.
 
         Args:
-            mode: The path of the end to a coordinate target (one of ANGULAR (0), LINEAR (1)).
+            mode: The path of the end of the arm to a coordinate target (one of ANGULAR (0), LINEAR
+                (1)).
 
         Safety: setting. Command id 0x87.
         """
@@ -219,7 +218,8 @@ class MotionCommands(Client):
     def get_movement_type(self) -> MovementType:
         """Read the path to coordinates.
 
-        Returns: The path of the end to a coordinate target (one of ANGULAR (0), LINEAR (1)).
+        Returns: The path of the end of the arm to a coordinate target (one of ANGULAR (0), LINEAR
+            (1)).
         Safety: query. Command id 0x88.
         """
         return self._call(messages.motion.GetMovementType())

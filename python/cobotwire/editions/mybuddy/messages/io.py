@@ -13,7 +13,7 @@ from ...mycobot.messages.io import SetPinMode as SetPinMode
 
 
 class SetPwmOutput(Request[None], command="set_pwm_output"):
-    """Set a PWM output of the arm's end."""
+    """Set a PWM output at the end of the arm."""
 
     channel: int
     frequency: int

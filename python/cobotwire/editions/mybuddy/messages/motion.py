@@ -108,7 +108,7 @@ class GetCoordReply(Reply[int], to=GetCoord):
 
 
 class SendAnglesAuto(Request[None], command="send_angles_auto"):
-    """Send all joints to angles in a time."""
+    """Send all joints to angles within a time."""
 
     angles: Sequence[float]
     time: int

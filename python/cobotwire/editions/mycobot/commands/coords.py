@@ -18,11 +18,11 @@ class CoordsCommands(Client):
     def get_coords(self) -> Coords:
         """Read the coordinates.
 
-        Reads the position and orientation of the end, in the selected reference frame and for the
-        selected end type.
+        Reads the position and orientation of the end of the arm, in the selected reference frame
+        and for the selected end type.
 
-        Returns: Position and orientation of the end (x, y, z -3253.5..3300 millimetres; rx, ry, rz
-            -325.35..330 degrees).
+        Returns: Position and orientation of the end of the arm (x, y, z -3253.5..3300 millimetres;
+            rx, ry, rz -325.35..330 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.coords.GetCoords())
@@ -30,7 +30,8 @@ class CoordsCommands(Client):
     def send_coord(self, axis: Axis | int, coord: float, speed: int) -> None:
         """Send one coordinate.
 
-        Moves the end so that one coordinate has a new value; the other five stay the same.
+        Moves the end of the arm so that one coordinate has a new value; the other five stay the
+        same.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
@@ -46,7 +47,7 @@ class CoordsCommands(Client):
         """Send all coordinates.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y, z -3253.5..3300
+            coords: Position and orientation of the end of the arm (6 numbers (x, y, z -3253.5..3300
                 millimetres; rx, ry, rz -325.35..330 degrees)).
             speed: Speed in percent of the maximum (0..100 percent).
             mode: The path to a coordinate target (one of ANGULAR (0), LINEAR (1), UNEXPLAINED (2)).

@@ -34,7 +34,8 @@ class JogCommands(Client):
         """Jog a joint to an angle.
 
         Turns one joint to an angle in degrees, at a speed in percent of the maximum. Newer firmware
-        (edition mycobot280) uses the id 0x31 for another command, a turn of the end about an axis.
+        (edition mycobot280) uses the id 0x31 for another command, a turn of the end of the arm
+        about an axis.
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
@@ -48,9 +49,9 @@ class JogCommands(Client):
     def jog_coord(self, axis: Axis | int, direction: TravelDirection | int, speed: int) -> None:
         """Jog a coordinate.
 
-        Moves the end along or about one axis, at a speed in percent of the maximum, until jog_stop
-        ends it. The motion continues by itself; if jog_stop is lost in transit, the arm keeps
-        moving. Check with is_moving afterwards.
+        Moves the end of the arm along or about one axis, at a speed in percent of the maximum,
+        until jog_stop ends it. The motion continues by itself; if jog_stop is lost in transit, the
+        arm keeps moving. Check with is_moving afterwards.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).

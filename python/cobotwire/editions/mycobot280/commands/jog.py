@@ -47,9 +47,9 @@ class JogCommands(Client):
     ) -> None:
         """Jog a coordinate.
 
-        Moves the end along or about one axis, at a speed in percent of the maximum, until stop ends
-        it. The motion continues by itself; if stop is lost in transit, the arm keeps moving. Check
-        with is_moving afterwards.
+        Moves the end of the arm along or about one axis, at a speed in percent of the maximum,
+        until stop ends it. The motion continues by itself; if stop is lost in transit, the arm
+        keeps moving. Check with is_moving afterwards.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
@@ -100,15 +100,16 @@ class JogCommands(Client):
         *,
         ack_within: float | None = None,
     ) -> None:
-        """Jog a rotation of the end.
+        """Jog a rotation of the end of the arm.
 
-        Turns the end about a fixed axis of the base's frame, at a speed in percent of the maximum,
-        until stop ends it. The motion continues by itself; if stop is lost in transit, the arm
-        keeps moving. Check with is_moving afterwards. Firmware of the document (edition mycobot)
-        uses the id 0x31 for another command, a turn of one joint to an angle; the lengths differ.
+        Turns the end of the arm about a fixed axis of the base's frame, at a speed in percent of
+        the maximum, until stop ends it. The motion continues by itself; if stop is lost in transit,
+        the arm keeps moving. Check with is_moving afterwards. Firmware of the document (edition
+        mycobot) uses the id 0x31 for another command, a turn of one joint to an angle; the lengths
+        differ.
 
         Args:
-            axis: An axis to turn the end about (one of ROLL (1), PITCH (2), YAW (3)).
+            axis: An axis to turn the end of the arm about (one of ROLL (1), PITCH (2), YAW (3)).
             direction: The direction in which a coordinate changes (one of BACKWARD (0), FORWARD
                 (1)).
             speed: Speed in percent of the maximum (1..100 percent).
@@ -141,9 +142,9 @@ class JogCommands(Client):
     ) -> None:
         """Jog a coordinate by a step.
 
-        Moves the end along or about one axis by a step from where it is, at a speed in percent of
-        the maximum; a negative step goes back. The step is relative; sending it twice moves twice
-        as far. The same id without data is jog_stop; the length tells them apart.
+        Moves the end of the arm along or about one axis by a step from where it is, at a speed in
+        percent of the maximum; a negative step goes back. The step is relative; sending it twice
+        moves twice as far. The same id without data is jog_stop; the length tells them apart.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).

@@ -21,8 +21,8 @@ class KinematicsCommands(Client):
             angles: The six joint angles, base first (6 numbers (j1, j2, j3, j4, j5, j6
                 -327.68..327.67 degrees)).
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
-            rz -327.68..327.67 degrees).
+        Returns: Position and orientation of the end of the arm (x, y, z -3276.8..3276.7
+            millimetres; rx, ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.kinematics.AnglesToCoords(angles))
@@ -30,11 +30,11 @@ class KinematicsCommands(Client):
     def solve_inv_kinematics(self, coords: Sequence[float], angles: Sequence[float]) -> Angles:
         """Calculate joint angles for coordinates.
 
-        Calculates joint angles that bring the end to the coordinates; of several solutions, the one
-        nearest to the given angles.
+        Calculates joint angles that bring the end of the arm to the coordinates; of several
+        solutions, the one nearest to the given angles.
 
         Args:
-            coords: The desired position and orientation of the end (6 numbers (x, y, z
+            coords: The desired position and orientation of the end of the arm (6 numbers (x, y, z
                 -3276.8..3276.7 millimetres; rx, ry, rz -327.68..327.67 degrees)).
             angles: The angles to start from, usually the current ones (6 numbers (j1, j2, j3, j4,
                 j5, j6 -327.68..327.67 degrees)).

@@ -195,7 +195,7 @@ class MotionCommands(Client):
     ) -> None:
         """Set the path to coordinates.
 
-        Sets the path of the end to a coordinate target.
+        Sets the path of the end of the arm to a coordinate target.
 
         Args:
             mode: The path to a coordinate target that is sent without a mode (one of ANGULAR (0),
@@ -208,7 +208,7 @@ class MotionCommands(Client):
     def get_movement_type(self) -> MovementType:
         """Read the path to coordinates.
 
-        Reads the path of the end to a coordinate target.
+        Reads the path of the end of the arm to a coordinate target.
 
         Returns: The path to a coordinate target that is sent without a mode (one of ANGULAR (0),
             LINEAR (1)).

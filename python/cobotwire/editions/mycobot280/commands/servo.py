@@ -329,9 +329,9 @@ class ServoCommands(Client):
         """Restore a servo's parameters.
 
         Restores the saved parameters of one servo, or of all (254). It overwrites the servo's
-        current parameters. No source says what it writes if nothing was saved, nor whether the zero
-        position is among them; support the arm first. It needs firmware 7.4 or later (the maker's
-        library 4.0.7: the firmware must be newer than 7.4.0).
+        current parameters. No source says what it writes if nothing was saved, nor whether it
+        restores the zero position; support the arm first. It needs firmware 7.4 or later (the
+        maker's library 4.0.7: the firmware must be newer than 7.4.0).
 
         Args:
             servo: Servo number, 1 to 6; 254 is all of them (one of 1, 2, 3, 4, 5, 6, 254).

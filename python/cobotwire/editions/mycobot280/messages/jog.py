@@ -52,7 +52,7 @@ class JogIncrementReply(Reply[None], to=JogIncrement):
 
 
 class JogRpy(Request[None], command="jog_rpy"):
-    """Jog a rotation of the end."""
+    """Jog a rotation of the end of the arm."""
 
     axis: RpyAxis | int
     direction: TravelDirection | int

@@ -21,7 +21,7 @@ class SystemCommands(Client):
     get_reboot_count = shared(Base.get_reboot_count)
 
     def get_tool_modify_version(self) -> int:
-        """Read the revision of the end's firmware.
+        """Read the revision of the firmware at the end of the arm.
 
         Reads the revision of the firmware at the end of the arm, a whole number in addition to its
         version.
@@ -32,7 +32,7 @@ class SystemCommands(Client):
         return self._call(messages.system.GetToolModifyVersion())
 
     def get_tool_system_version(self) -> float:
-        """Read the version of the end's firmware.
+        """Read the version of the firmware at the end of the arm.
 
         Returns: Version of the firmware, such as 7.3 (0..25.5).
         Safety: query. Command id 0x09.
@@ -70,7 +70,7 @@ class SystemCommands(Client):
         return self._call(messages.system.GetQueueLength())
 
     def is_tool_button_click(self) -> bool:
-        """Check whether the button at the end is pressed.
+        """Check whether the button at the end of the arm is pressed.
 
         Returns: True if the button is pressed.
         Safety: query. Command id 0x1C.

@@ -20,7 +20,7 @@ from ...mycobot280.messages.system import ReadNextErrorReply as ReadNextErrorRep
 
 
 class GetToolModifyVersion(Request[int], command="get_tool_modify_version"):
-    """Read the revision of the end's firmware."""
+    """Read the revision of the firmware at the end of the arm."""
 
 
 class GetToolModifyVersionReply(Reply[int], to=GetToolModifyVersion):
@@ -30,7 +30,7 @@ class GetToolModifyVersionReply(Reply[int], to=GetToolModifyVersion):
 
 
 class GetToolSystemVersion(Request[float], command="get_tool_system_version"):
-    """Read the version of the end's firmware."""
+    """Read the version of the firmware at the end of the arm."""
 
 
 class GetToolSystemVersionReply(Reply[float], to=GetToolSystemVersion):
@@ -72,7 +72,7 @@ class GetQueueLengthReply(Reply[int], to=GetQueueLength):
 
 
 class IsToolButtonClick(Request[bool], command="is_tool_button_click"):
-    """Check whether the button at the end is pressed."""
+    """Check whether the button at the end of the arm is pressed."""
 
 
 class IsToolButtonClickReply(Reply[bool], to=IsToolButtonClick):

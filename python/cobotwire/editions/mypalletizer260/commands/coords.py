@@ -18,10 +18,10 @@ class CoordsCommands(Client):
     def get_coords(self) -> Coords:
         """Read the coordinates.
 
-        Reads the position and orientation of the end, in the selected reference frame and for the
-        selected end type.
+        Reads the position and orientation of the end of the arm, in the selected reference frame
+        and for the selected end type.
 
-        Returns: Position of the end, and its rotation about the vertical axis (x, y, z
+        Returns: Position of the end of the arm, and its rotation about the vertical axis (x, y, z
             -3276.8..3276.7 millimetres; theta -327.68..327.67 degrees).
         Safety: query. Command id 0x23.
         """
@@ -30,7 +30,8 @@ class CoordsCommands(Client):
     def send_coord(self, axis: Axis | int, coord: float, speed: int) -> None:
         """Send one coordinate.
 
-        Moves the end so that one coordinate has a new value; the other three stay the same.
+        Moves the end of the arm so that one coordinate has a new value; the other three stay the
+        same.
 
         Args:
             axis: One of the four coordinates (one of X (1), Y (2), Z (3), THETA (4)).
@@ -45,11 +46,12 @@ class CoordsCommands(Client):
     def send_coords(self, coords: Sequence[float], speed: int) -> None:
         """Send all coordinates.
 
-        Moves the end to a position and orientation.
+        Moves the end of the arm to a position and orientation.
 
         Args:
-            coords: Position of the end, and its rotation about the vertical axis (4 numbers (x, y
-                -260..260 millimetres; z -15..357.5 millimetres; theta -180..180 degrees)).
+            coords: Position of the end of the arm, and its rotation about the vertical axis (4
+                numbers (x, y -260..260 millimetres; z -15..357.5 millimetres; theta -180..180
+                degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x25.

@@ -126,7 +126,8 @@ class MotionCommands(Client):
     def get_feed_override(self) -> int:
         """Read the feed override.
 
-        Returns: By how much motions are slowed or quickened; no source states the scale (0..255).
+        Returns: By how much motions are slowed down or sped up; no source states the scale
+            (0..255).
         Safety: query. Command id 0x42.
         """
         return self._call(messages.motion.GetFeedOverride())

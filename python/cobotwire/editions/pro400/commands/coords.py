@@ -27,8 +27,8 @@ class CoordsCommands(Client):
             angles: The six joint angles, base first (6 numbers (j1, j2, j3, j4, j5, j6
                 -327.68..327.67 degrees)).
 
-        Returns: Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry,
-            rz -327.68..327.67 degrees).
+        Returns: Position and orientation of the end of the arm (x, y, z -3276.8..3276.7
+            millimetres; rx, ry, rz -327.68..327.67 degrees).
         Safety: query. Command id 0x23.
         """
         return self._call(messages.coords.AnglesToCoords(angles))
@@ -38,7 +38,7 @@ class CoordsCommands(Client):
     ) -> None:
         """Send one coordinate.
 
-        Moves the end so that one coordinate has a new value.
+        Moves the end of the arm so that one coordinate has a new value.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
@@ -53,11 +53,11 @@ class CoordsCommands(Client):
     def send_coords(
         self, coords: Sequence[float], speed: int, *, ack_within: float | None = None
     ) -> None:
-        """Send the end to coordinates.
+        """Send all coordinates.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
-                millimetres; rx, ry, rz -180..180 degrees)).
+            coords: Position and orientation of the end of the arm (6 numbers (x, y, z
+                -3276.8..3276.7 millimetres; rx, ry, rz -180..180 degrees)).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x25.
@@ -76,8 +76,8 @@ class CoordsCommands(Client):
         """Move on an arc with a radius.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
-                millimetres; rx, ry, rz -180..180 degrees)).
+            coords: Position and orientation of the end of the arm (6 numbers (x, y, z
+                -3276.8..3276.7 millimetres; rx, ry, rz -180..180 degrees)).
             radius: Radius of an arc (0..655.35 millimetres).
             speed: Speed in percent of the maximum (1..100 percent).
             arc: Which of two arcs with the same radius (one of USUAL (0), MAJOR (1), MINOR (2)).
@@ -89,11 +89,11 @@ class CoordsCommands(Client):
     def solve_inv_kinematics(self, coords: Sequence[float], angles: Sequence[float]) -> Angles:
         """Calculate angles.
 
-        Calculates the angles near others that bring the end to coordinates.
+        Calculates the joint angles, near given ones, that bring the end of the arm to coordinates.
 
         Args:
-            coords: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
-                millimetres; rx, ry, rz -180..180 degrees)).
+            coords: Position and orientation of the end of the arm (6 numbers (x, y, z
+                -3276.8..3276.7 millimetres; rx, ry, rz -180..180 degrees)).
             angles: The six joint angles, base first (6 numbers (j1, j2, j3, j4, j5, j6
                 -327.68..327.67 degrees)).
 

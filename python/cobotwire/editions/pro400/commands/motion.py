@@ -95,8 +95,8 @@ class MotionCommands(Client):
         Reports whether the arm is at a target, given as coordinates.
 
         Args:
-            target: Position and orientation of the end (6 numbers (x, y, z -3276.8..3276.7
-                millimetres; rx, ry, rz -180..180 degrees)).
+            target: Position and orientation of the end of the arm (6 numbers (x, y, z
+                -3276.8..3276.7 millimetres; rx, ry, rz -180..180 degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.
@@ -109,9 +109,9 @@ class MotionCommands(Client):
         Reads the angles, the coordinates, and eight further bytes.
 
         Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -360..360 degrees);
-            Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry, rz
-            -327.68..327.67 degrees); Eight bytes that no source explains (byte_1, byte_2, byte_3,
-            byte_4, byte_5, byte_6, byte_7, byte_8 0..255).
+            Position and orientation of the end of the arm (x, y, z -3276.8..3276.7 millimetres; rx,
+            ry, rz -327.68..327.67 degrees); Eight bytes that no source explains (byte_1, byte_2,
+            byte_3, byte_4, byte_5, byte_6, byte_7, byte_8 0..255).
         Safety: query. Command id 0xD6.
         """
         return self._call(messages.motion.GetQuickMoveInfo())
@@ -120,7 +120,8 @@ class MotionCommands(Client):
         """Set whether the end of motions is reported.
 
         Args:
-            mode: Whether a motion is waited for (one of ASYNCHRONOUS (0), SYNCHRONOUS (1)).
+            mode: Whether the arm reports the end of each motion (one of ASYNCHRONOUS (0),
+                SYNCHRONOUS (1)).
 
         Safety: setting. Command id 0x0B.
         """
@@ -129,7 +130,8 @@ class MotionCommands(Client):
     def get_pos_switch(self) -> PosSwitch:
         """Read whether the end of motions is reported.
 
-        Returns: Whether a motion is waited for (one of ASYNCHRONOUS (0), SYNCHRONOUS (1)).
+        Returns: Whether the arm reports the end of each motion (one of ASYNCHRONOUS (0),
+            SYNCHRONOUS (1)).
         Safety: query. Command id 0x0C.
         """
         return self._call(messages.motion.GetPosSwitch())

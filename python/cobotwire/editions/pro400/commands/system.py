@@ -44,7 +44,7 @@ class SystemCommands(Client):
     def get_comm_error_counts(self, joint: int, kind: ErrorKind | int) -> int:
         """Count communication errors.
 
-        Reads how often the communication with a joint or with the end failed.
+        Reads how often the communication with a joint or with the end of the arm failed.
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).

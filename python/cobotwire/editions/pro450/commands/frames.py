@@ -13,7 +13,7 @@ from .. import messages
 
 
 class FramesCommands(Client):
-    """In which frame coordinates are, and which point of the end they are about."""
+    """The frame and the point to which coordinates refer."""
 
     get_tool_reference = shared(Base.get_tool_reference)
     get_world_reference = shared(Base.get_world_reference)
@@ -25,7 +25,7 @@ class FramesCommands(Client):
     def set_tool_reference(
         self, coords: Sequence[float], *, ack_within: float | None = None
     ) -> None:
-        """Set the tool.
+        """Set the tool reference.
 
         Sets where the tool is on the flange.
 
@@ -40,7 +40,7 @@ class FramesCommands(Client):
     def set_world_reference(
         self, coords: Sequence[float], *, ack_within: float | None = None
     ) -> None:
-        """Set the world.
+        """Set the world reference.
 
         Sets where the base is in the world.
 

@@ -13,7 +13,7 @@ from ..values import GetBaseExternalConfigResult, GetDigitalInputsResult
 
 
 class IoCommands(Client):
-    """Inputs and outputs of the base and the end, the button and the light."""
+    """Inputs and outputs at the base and at the end of the arm, the button and the light."""
 
     set_digital_output = shared(Base.set_digital_output)
     get_digital_input = shared(Base.get_digital_input)
@@ -41,9 +41,9 @@ class IoCommands(Client):
         return self._call(messages.io.GetBaseIoInput(pin))
 
     def get_digital_inputs(self) -> GetDigitalInputsResult:
-        """Read the inputs of the end.
+        """Read the inputs at the end of the arm.
 
-        Reads both inputs and both buttons of the end.
+        Reads both inputs and both buttons at the end of the arm.
 
         Returns: True if the first input is high; True if the second input is high; True while the
             right button is pressed; True while the left button is pressed.

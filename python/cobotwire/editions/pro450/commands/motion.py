@@ -102,8 +102,8 @@ class MotionCommands(Client):
         Reports whether the arm is at a target, given as coordinates.
 
         Args:
-            target: Position and orientation of the end (6 numbers (x, y -474..474 millimetres; z
-                -180..677 millimetres; rx, ry, rz -180..180 degrees)).
+            target: Position and orientation of the end of the arm (6 numbers (x, y -474..474
+                millimetres; z -180..677 millimetres; rx, ry, rz -180..180 degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.

@@ -34,8 +34,8 @@ class PlanningCommands(Client):
         """Set a limit of blended motions.
 
         Args:
-            parameter: A limit of blended motions, or the usual values of all (one of USUAL (0),
-                JOINT_SPEED (1), JOINT_ACCELERATION (2), END_SPEED (3), END_ACCELERATION (4)).
+            parameter: A limit of blended motions, or the initial values of all limits (one of USUAL
+                (0), JOINT_SPEED (1), JOINT_ACCELERATION (2), END_SPEED (3), END_ACCELERATION (4)).
             value: A speed or an acceleration; no source states the unit (0..10000; optional).
 
         Safety: setting. Command id 0x4F.

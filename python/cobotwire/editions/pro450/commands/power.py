@@ -62,7 +62,7 @@ class PowerCommands(Client):
     def is_motor_pause(self) -> bool:
         """Check whether the motors are paused.
 
-        Reports whether the motors are paused; resume lets them go on.
+        Reports whether the motors are paused; resume ends the pause.
 
         Returns: True if the motors are paused.
         Safety: query. Command id 0xEC.

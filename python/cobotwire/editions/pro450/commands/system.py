@@ -23,7 +23,7 @@ class SystemCommands(Client):
     get_atom_version = shared(Base.get_atom_version)
 
     def get_tool_modify_version(self) -> int:
-        """Read the revision of the end's firmware.
+        """Read the revision of the firmware at the end of the arm.
 
         Returns: Revision of a version (0..255).
         Safety: query. Command id 0x06.
@@ -57,14 +57,14 @@ class SystemCommands(Client):
     def get_comm_error_counts(self, joint: int) -> GetCommErrorCountsResult:
         """Count communication errors.
 
-        Reads how often the communication with a joint and with the end failed.
+        Reads how often the communication with a joint and with the end of the arm failed.
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
 
         Returns: Nothing could be sent to the joint (0..65535); Nothing was read from the joint
-            (0..65535); Nothing could be sent to the end (0..65535); Nothing was read from the end
-            (0..65535).
+            (0..65535); Nothing could be sent to the end of the arm (0..65535); Nothing was read
+            from the end of the arm (0..65535).
         Safety: query. Command id 0xA3.
         """
         return self._call(messages.system.GetCommErrorCounts(joint))

@@ -20,7 +20,7 @@ from ..values import GetBaseExternalConfigResult, GetDigitalInputsResult
 
 
 class GetDigitalInputs(Request[GetDigitalInputsResult], command="get_digital_inputs"):
-    """Read the inputs of the end."""
+    """Read the inputs at the end of the arm."""
 
 
 class GetDigitalInputsReply(

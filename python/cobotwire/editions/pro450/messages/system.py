@@ -22,7 +22,7 @@ from ..values import GetCommErrorCountsResult, GetRobotStatusResult, JointFlags,
 
 
 class GetToolModifyVersion(Request[int], command="get_tool_modify_version"):
-    """Read the revision of the end's firmware."""
+    """Read the revision of the firmware at the end of the arm."""
 
 
 class GetToolModifyVersionReply(Reply[int], to=GetToolModifyVersion):

@@ -54,12 +54,13 @@ class JogCommands(Client):
     ) -> None:
         """Move along an axis by a distance.
 
-        Moves the end along or about one axis by a distance or an angle.
+        Moves the end of the arm along or about one axis by a distance or an angle.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
-            increment: By how much the end moves along x or y (for X, Y: -1260..1260 millimetres;
-                for Z: -1260..1260 millimetres; for RX, RY, RZ: -327.67..327.67 degrees).
+            increment: By how much the end of the arm moves along x or y (for X, Y: -1260..1260
+                millimetres; for Z: -1260..1260 millimetres; for RX, RY, RZ: -327.67..327.67
+                degrees).
             speed: Speed in percent of the maximum (1..100 percent).
 
         Safety: motion. Command id 0x34.

@@ -94,8 +94,8 @@ class MotionCommands(Client):
         Reports whether the arm is at a target, given as coordinates.
 
         Args:
-            target: Position and orientation of the end (6 numbers (x, y -630..630 millimetres; z
-                -425..835 millimetres; rx, ry, rz -180..180 degrees)).
+            target: Position and orientation of the end of the arm (6 numbers (x, y -630..630
+                millimetres; z -425..835 millimetres; rx, ry, rz -180..180 degrees)).
 
         Returns: True if the arm is at the target.
         Safety: query. Command id 0x2A.
@@ -108,9 +108,9 @@ class MotionCommands(Client):
         Reads the angles, the coordinates, and eight further bytes.
 
         Returns: The six joint angles, base first (j1, j2, j3, j4, j5, j6 -360..360 degrees);
-            Position and orientation of the end (x, y, z -3276.8..3276.7 millimetres; rx, ry, rz
-            -327.68..327.67 degrees); Eight bytes that no source explains (byte_1, byte_2, byte_3,
-            byte_4, byte_5, byte_6, byte_7, byte_8 0..255).
+            Position and orientation of the end of the arm (x, y, z -3276.8..3276.7 millimetres; rx,
+            ry, rz -327.68..327.67 degrees); Eight bytes that no source explains (byte_1, byte_2,
+            byte_3, byte_4, byte_5, byte_6, byte_7, byte_8 0..255).
         Safety: query. Command id 0xD6.
         """
         return self._call(messages.motion.GetQuickMoveInfo())

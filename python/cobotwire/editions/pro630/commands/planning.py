@@ -32,11 +32,11 @@ class PlanningCommands(Client):
     def get_pos_over(self) -> PositionPairs:
         """Read two positions of each joint.
 
-        Reads two numbers of each joint: where it was sent, and where it is.
+        Reads two positions of each joint: its target, and where it is.
 
-        Returns: For each joint, base first: where it was sent, and where it is (j1_sent,
-            j1_measured, j2_sent, j2_measured, j3_sent, j3_measured, j4_sent, j4_measured, j5_sent,
-            j5_measured, j6_sent, j6_measured -2147483648..2147483647).
+        Returns: For each joint, base first: its target and its position (j1_sent, j1_measured,
+            j2_sent, j2_measured, j3_sent, j3_measured, j4_sent, j4_measured, j5_sent, j5_measured,
+            j6_sent, j6_measured -2147483648..2147483647).
         Safety: query. Command id 0x94.
         """
         return self._call(messages.planning.GetPosOver())

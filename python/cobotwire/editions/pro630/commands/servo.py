@@ -146,25 +146,23 @@ class ServoCommands(Client):
     def set_collision_threshold(
         self, joint: int, threshold: int = 100, *, ack_within: float | None = None
     ) -> None:
-        """Set when a joint notices a collision.
-
-        Sets how strong a collision one joint must be to stop the arm.
+        """Set the collision threshold of a joint.
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            threshold: How strong a collision stops the arm; a small share stops it early (50..250
-                percent; default: 100).
+            threshold: How strong a collision must be to stop the arm; a low value stops it early
+                (50..250 percent; default: 100).
 
         Safety: setting. Command id 0x75.
         """
         return self._send(messages.servo.SetCollisionThreshold(joint, threshold), ack_within)
 
     def get_collision_threshold(self) -> JointPercents:
-        """Read when the joints notice a collision.
+        """Read the collision thresholds.
 
         Reads how strong a collision of each joint must be to stop the arm.
 
-        Returns: A share for each of the six joints, base first (j1, j2, j3, j4, j5, j6 0..255
+        Returns: A percentage for each of the six joints, base first (j1, j2, j3, j4, j5, j6 0..255
             percent).
         Safety: query. Command id 0x76.
         """
@@ -179,7 +177,7 @@ class ServoCommands(Client):
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
-            compensation: How much friction is compensated; a joint with a large share is easy to
+            compensation: How much friction is compensated; a joint with a high value is easy to
                 move (0..250 percent; default: 100).
 
         Safety: setting. Command id 0x77.
@@ -191,7 +189,7 @@ class ServoCommands(Client):
 
         Reads how much friction of each joint is compensated.
 
-        Returns: A share for each of the six joints, base first (j1, j2, j3, j4, j5, j6 0..255
+        Returns: A percentage for each of the six joints, base first (j1, j2, j3, j4, j5, j6 0..255
             percent).
         Safety: query. Command id 0x78.
         """

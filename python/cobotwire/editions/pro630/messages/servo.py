@@ -86,7 +86,7 @@ class IsInitCalibrationReply(
 
 
 class GetCollisionThreshold(Request[JointPercents], command="get_collision_threshold"):
-    """Read when the joints notice a collision."""
+    """Read the collision thresholds."""
 
 
 class GetCollisionThresholdReply(Reply[JointPercents], to=GetCollisionThreshold):

@@ -3,7 +3,7 @@
 
 CLASS = {'name': 'Pro400', 'module': 'pro400', 'doc': 'A myCobot Pro 400 on a serial port.', 'edition': 'pro400', 'opens': 'serial', 'constructor': (('port', 'str', '/dev/ttyAMA1'), ('baudrate', 'str | int', '115200'), ('timeout', 'float', 0.1), ('debug', 'bool', False), ('save_serial_log', 'bool', False)), 'helpers': (('closed_loop', 'Reporting'),), 'native': 'Pro400', 'joints': 6, 'methods_in': ('mycobot280', 'mycobot320', 'mercury', 'pro400')}
 METHODS = (
-    (('Pro400', 'Pro630Client'), 'get_atom_modify_version', "Read the revision of the end's firmware", 'query', (), (), (('result', 'listed'), ('gives', 'parts'))),
+    (('Pro400', 'Pro630Client'), 'get_atom_modify_version', 'Read the revision of the firmware at the end of the arm', 'query', (), (), (('result', 'listed'), ('gives', 'parts'))),
     (('Pro400', 'Pro630Client'), 'get_collision_mode', 'Check whether the collision check is on', 'query', (), (), (('result', 'listed'), ('gives', 'parts'))),
     (('Pro400',), 'get_comm_error_counts', 'Count communication errors', 'query', (('joint_id', 'int'), ('_type', 'int')), (('joint', 'joint_id'), ('kind', '_type')), (('result', 'listed'), ('gives', 'parts'))),
     (('Pro400', 'Pro630Client'), 'get_drag_fifo', 'Read the next recorded point', 'query', (), (), (('result', 'in_hundredths'), ('gives', 'parts'))),

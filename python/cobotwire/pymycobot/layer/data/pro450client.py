@@ -20,7 +20,7 @@ METHODS = (
     (('Pro450Client',), 'resume', 'Continue the motion', 'send_acked', (), (), ()),
     (('Pro450Client',), 'set_base_external_config', 'Set up the bus at the base', 'send_acked', (('communicate_mode', 'int'), ('baud_rate', 'int'), ('timeout', 'int')), (('bus', 'communicate_mode'), ('baud', 'baud_rate'), ('timeout', 'timeout')), ()),
     (('Pro450Client',), 'set_communication_mode', 'Set the protocol', 'send_acked', (('protocol_mode', 'int', 0),), (('protocol', 'protocol_mode', '0'),), ()),
-    (('Pro450Client',), 'set_control_mode', 'Set what the arm controls', 'send_acked', (('mode', 'int', 0),), (('mode', 'mode'),), ()),
+    (('Pro450Client',), 'set_control_mode', 'Set the control mode', 'send_acked', (('mode', 'int', 0),), (('mode', 'mode'),), ()),
     (('Pro450Client',), 'set_debug_state', 'Set which logs the arm writes', 'send_acked', (('log_state', 'int'),), (('logs', 'log_state'),), ()),
     (('Pro450Client',), 'set_free_move_mode', 'Turn moving by hand on or off', 'send_acked', (('mode', 'int'),), (('on', 'mode'),), ()),
     (('Pro450Client',), 'set_fusion_parameters', 'Set a limit of blended motions', 'send_acked', (('rank_mode', 'int'), ('value', 'int | None', None)), (('parameter', 'rank_mode'), ('value', 'value', 'None')), ()),
