@@ -64,10 +64,9 @@ fn dice() -> Vec<Vec<u8>> {
 fn frames() -> impl Iterator<Item = Vec<u8>> {
     let subjects = subjects::all().iter().enumerate();
     subjects.flat_map(|(index, subject)| {
-        let vectors = subject.edition.vectors.iter();
-        vectors.flat_map(move |vector| {
-            let listening = Listening::To(vector.direction);
-            bytes(vector).map(move |bytes| seed(index, listening, false, bytes))
+        let frames = subject.variants.iter().zip(&subject.frames);
+        frames.map(move |(variant, frame)| {
+            seed(index, Listening::To(variant.direction), false, frame)
         })
     })
 }

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="80209bab")
+TABLE = load_table(__package__, checksum="0ac510a5")

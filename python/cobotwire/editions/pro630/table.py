@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="e87b755e")
+TABLE = load_table(__package__, checksum="09db57ee")

@@ -64,7 +64,7 @@ class PlanningCommands(Client):
 
         Args:
             mode: What a speed or an acceleration applies to (one of ANGLES (0), COORDS (1)).
-            acceleration: Highest acceleration of joints, in degrees per square second (for ANGLES:
+            acceleration: Highest acceleration of joints, in degrees per second squared (for ANGLES:
                 1..200; for COORDS: 1..400 millimetres per second squared).
 
         Safety: setting. Command id 0x43.
