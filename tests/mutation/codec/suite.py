@@ -96,8 +96,10 @@ def codec_mutants(table: Table) -> Iterator[CodecMutant]:
                 for first_two in (False, True):
                     how = "first two swapped" if first_two else "last element first"
                     text = f"{command.name} {direction}: {name} {how}"
-                    make = partial(ReorderingCodec, table, command.name, direction, name, first_two)
-                    yield CodecMutant("order", text, command.name, make)
+                    codec = partial(
+                        ReorderingCodec, table, command.name, direction, name, first_two
+                    )
+                    yield CodecMutant("order", text, command.name, codec)
     for name, broken in broken_framers():
         yield CodecMutant("framing", name, "", partial(_answering, broken, table))
     for name, wrong_frame in wrong_frames(table):
