@@ -64,4 +64,4 @@ def test_page_says_what_real_arms_showed_and_which_facts_are_disputed(site: Path
     text = page("mycobot280")
     assert "| reports from real arms: FE FE 03 65 19 FA |" in text
     assert "The sources disagree about `is_in_position`" in text
-    assert "Frames were captured in public of `set_gripper_enabled`" in page("mercury_a1")
+    assert "have frames of `set_gripper_enabled`" in page("mercury_a1")
