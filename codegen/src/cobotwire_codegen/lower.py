@@ -20,6 +20,11 @@ from cobotwire_codegen.model import (
 )
 
 
+def numbers(type: Type) -> tuple[dict[str, Any], ...]:
+    """Return the numbers of a type in wire order, for the templates of users (docs/targets.md)."""
+    return type.numbers
+
+
 def kind(type: Type) -> str:
     """Return the kind of a field of this type."""
     return type.kind if isinstance(type, Enum | Flag) else "number"
