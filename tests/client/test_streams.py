@@ -48,9 +48,9 @@ def test_samples_are_numbered_timed_and_typed(open_arm: Opener, server: PtyServe
         assert times == sorted(times)
         report = stream.report
         assert report.samples == 25
-        # A busy machine sometimes wakes late; no other period may be missed.
         assert report.unanswered == 0
-        assert report.reached > 16
+        # A busy machine sometimes wakes late, once for many periods; no other period may be missed.
+        assert sum(b.period == a.period + 1 for a, b in pairwise(samples)) >= 19
 
 
 @pytest.mark.parametrize("opening", list(NEWER))
@@ -85,10 +85,10 @@ def test_samples_missed_by_a_slow_consumer_are_not_requested(
     with peer_on(*[[REPLY]] * 9) as peer, open_arm(peer.url) as arm:
         stream = arm.stream(GET_ANGLES, rate=50)
         for sample in islice(stream, 5):
-            assert time.monotonic() - sample.replied_at < 0.1
-            time.sleep(0.105)
+            assert time.monotonic() - sample.replied_at < 0.2
+            time.sleep(0.205)
         assert peer.received == 5 * REQUEST
-        assert stream.report.unread >= 18
+        assert stream.report.unread >= 36
         assert stream.report.samples == 5
 
 
