@@ -117,7 +117,7 @@ def record_example(path: Path) -> None:
 
 
 def missing() -> str:
-    """Return what the page needs but is missing; empty if there is none."""
+    """Return what the page needs but is missing; empty without one."""
     return npm_package.missing() or ("" if CURVES.is_file() else "needs uPlot: make front-end")
 
 

@@ -43,7 +43,7 @@ class Problem:
 class SpecError(Exception):
     """A spec that cannot be used; carries every problem, in the order of the files.
 
-    ``partial`` is the edition with stand-ins for what could not be read; None if there is none.
+    ``partial`` is the edition with stand-ins for what could not be read, or None.
     """
 
     def __init__(self, problems: Iterable[Problem], partial: Any = None) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 
 def odd_character(text: str) -> str:
-    """Return the first character that a spec may not contain, in words; empty if there is none.
+    """Return the first character that a spec may not contain, in words; empty without one.
 
     Legal are the characters that can be seen, the space, and the line feed and the tab, which lay
     out a text of several lines. Illegal are control characters (a terminal executes them),

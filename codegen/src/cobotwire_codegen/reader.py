@@ -86,6 +86,6 @@ def chosen(node: Node, choice: Choice, what: str, problems: list[Problem]) -> st
 
 
 def label(node: Node, key: Key[Any]) -> str:
-    """Return the plain value under a key, for use in messages; empty if there is none."""
+    """Return the plain value under a key, for use in messages; empty without one."""
     value = node.entries.get(key.name) if isinstance(node, Mapping) else None
     return str(value.value) if isinstance(value, Scalar) and value.value is not None else ""

@@ -77,7 +77,7 @@ class Layout:
 
 
 def common_type(types: set[Any]) -> Any:
-    """Return a type that can hold the values of each of ``types``; None if there is none.
+    """Return a type that can hold the values of each of ``types``, or None.
 
     Fixed-size lists of several sizes become lists. Enums with several lists of names become texts.
     Numbers of several types get the larger type.

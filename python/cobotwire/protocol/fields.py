@@ -137,7 +137,7 @@ class Field(NamedTuple):
         return data.decode(self.encoding)
 
     def bad_text_at(self, values: Sequence[Any]) -> int | None:
-        """Return the index of the first byte that is not text; None if there is none."""
+        """Return the index of the first byte that is not text, or None."""
         if self.kind != "text" or self.encoding != "utf-8":
             return None
         for at in range(0, len(values), self.each or len(values) or 1):

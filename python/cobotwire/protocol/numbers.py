@@ -67,7 +67,7 @@ class Number(NamedTuple):
 
     @property
     def units(self) -> str:
-        """The unit as it follows a number: its plural; empty if there is none."""
+        """The unit as it follows a number: its plural; empty without one."""
         return stored_texts("units.json").get(self.unit, self.unit)
 
     @property

@@ -14,5 +14,5 @@ def get_port_list() -> list[str]:
 
 
 def detect_port_of_basic() -> str | None:
-    """Return the port of the first M5Stack Basic; None if there is none."""
+    """Return the port of the first M5Stack Basic, or None."""
     return next((port.device for port in ports() if port.usb.endswith(f":{_BASIC}")), None)

@@ -176,7 +176,7 @@ class _CommandAcks:
         return [each.until for each in others if not replies_differ(each.request, request)]
 
     def oldest(self, received: _Received) -> ExpectedAck | None:
-        """Return the oldest acknowledgement that a frame can be; None if there is none."""
+        """Return the oldest acknowledgement that a frame can be, or None."""
         return next((ack for ack in self.expected if received.of(ack.request)), None)
 
     def forget_expired(self, now: float) -> None:

@@ -58,7 +58,7 @@ class OutstandingReplies:
         return max(alike, default=None)
 
     def find(self, frame: Frame, now: float) -> OutstandingReply | None:
-        """Return the oldest outstanding reply that a frame can be; None if there is none."""
+        """Return the oldest outstanding reply that a frame can be, or None."""
         for reply in self.replies:
             if reply.until > now and can_reply_to(frame, reply.request):
                 return reply

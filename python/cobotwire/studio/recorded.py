@@ -61,7 +61,7 @@ class RecordedSession:
         self.name = Path(path).name
 
     def find(self, number: int) -> Entry | None:
-        """Return an entry by its number; None if there is none."""
+        """Return an entry by its number, or None."""
         return self._entries[number] if 0 <= number < len(self._entries) else None
 
     def entries(self) -> list[Entry]:

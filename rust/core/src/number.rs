@@ -30,7 +30,7 @@ impl NumberEncoding {
     /// All encodings, with their names.
     pub const ALL: [(&'static str, Self); 2] = [("integer", Self::Integer), ("float", Self::Float)];
 
-    /// Return the encoding with a name; `None` if there is none.
+    /// Return the encoding with a name, or `None`.
     #[must_use]
     pub fn named(word: &str) -> Option<Self> {
         let known = Self::ALL.into_iter().find(|(known, _)| *known == word);

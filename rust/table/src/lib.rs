@@ -113,7 +113,7 @@ impl Field {
 }
 
 /// What texts need of a number: its name in a named tuple, its unit, and the words of its choices;
-/// each is empty if there is none.
+/// each may be empty.
 #[derive(Clone, Debug, Default)]
 #[allow(missing_docs)] // the names of the fields explain them
 pub struct Number {

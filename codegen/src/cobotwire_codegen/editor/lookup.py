@@ -55,7 +55,7 @@ def _meanings(edition: Edition, word: str) -> Iterator[str]:
 
 
 def _vector_at(workspace: Workspace, edition: Edition, path: Path, line: int) -> Vector | None:
-    """Return the vector that a line describes; None if there is none."""
+    """Return the vector that a line describes, or None."""
     path = path.resolve()
     here = [v for v in edition.vectors if workspace.path(v.place) == path]
     started = [vector for vector in here if vector.place.line <= line + 1]

@@ -9,7 +9,7 @@ from cobotwire_codegen.model import Command, Edition
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A parameter of a method; ``default`` is a literal, and empty if there is none."""
+    """A parameter of a method; ``default`` is a literal, or empty."""
 
     name: str
     default: str
@@ -49,7 +49,7 @@ class LibraryClass:
     """A class of the library.
 
     ``edition`` is the edition on ``ports``, and ``elsewhere`` the edition on all other ports; they
-    may be equal. ``like`` is the class that it inherits from; empty if there is none. ``one_way``
+    may be equal. ``like`` is the class that it inherits from; empty without one. ``one_way``
     says what its one-way requests return, and when. ``absent`` are its names that have no
     counterpart, each with why.
     """

@@ -44,7 +44,7 @@ def _agree(edition: Edition, command: Command, request: Vector, reply: Vector) -
 
 
 def example_frame(edition: Edition, command: Command, direction: Direction, sizes: range) -> bytes:
-    """Return the frame of an example with one of these sizes; empty if there is none.
+    """Return the frame of an example with one of these sizes; empty without one.
 
     The example of :func:`examples` is preferred.
     """

@@ -122,7 +122,7 @@ def family(edition: str, behaviours: Behaviours) -> Behaviours:
 
 
 def own(table: Table, command: Command) -> Behaviour | None:
-    """Return the behaviour of cobotwire for a command; None if there is none.
+    """Return the behaviour of cobotwire for a command, or None.
 
     A command with the same name but other fields has none: the behaviour does not know them.
     """

@@ -127,7 +127,7 @@ def case_choices(variant: Variant) -> Iterator[dict[str, int]]:
 
 
 def bad_text_at(field: Field, raw_values: tuple[int, ...]) -> int | None:
-    """Return the index of the first byte that is not text in UTF-8; None if there is none."""
+    """Return the index of the first byte that is not text in UTF-8, or None."""
     type = field.type.of if isinstance(field.type, Listed) else field.type
     if not isinstance(type, Chars) or type.encoding != "utf-8":
         return None
