@@ -1,4 +1,4 @@
-"""Parses plain YAML in C, which is faster; the parser in Python decides everything else.
+"""Parses plain YAML in C, which is faster; the parser in Python parses all other text.
 
 The C parser is optional. It follows YAML 1.1 and has other messages. So its result is used only for
 text that both parsers read alike: one document, a mapping or a list, without mistakes, directives,

@@ -78,7 +78,7 @@ def _facts(command: Command) -> Iterator[str]:
 
 
 def _aspects(field: Field) -> Iterator[str]:
-    """Yield what is stated about a field; a survey reports the same (its ``facts.py``)."""
+    """Yield the aspects of a field that are facts; the survey's ``facts.py`` has the same rules."""
     types = [type for _, type in field.cases] or [field.type]
     numbers: list[Scalar] = [part for type in types for _, part in type.parts]
     if any(isinstance(type, Value | Bits) for type in types):
@@ -115,7 +115,7 @@ def confirmed(edition: Edition, sources: Sources = NO_SOURCES) -> Confirmed:
     }
     observed = {fact.fact for each in edition.observed for fact in each.facts}
     shown = observed - {f.fact for each in edition.observed for f in each.facts if not f.confirmed}
-    # A command that is present confirms its request's length: another length would have no effect.
+    # If a command is present, its request's length is right: an arm ignores any other length.
     present = [fact for fact in shown if fact.endswith("/command/present")]
     shown |= {fact.replace("command/present", "request/length") for fact in present}
     found = {}
@@ -134,7 +134,7 @@ def confirmed(edition: Edition, sources: Sources = NO_SOURCES) -> Confirmed:
 
 
 def _framed(command: str, direction: str) -> set[str]:
-    """Return the facts that a frame from outside shows."""
+    """Return the facts that a frame from a source outside of this project shows."""
     shown = {f"{command}/command/present", f"{command}/{direction}/length"}
     return shown | ({f"{command}/reply/id"} if direction == "reply" else set())
 
@@ -145,7 +145,7 @@ _ROW = re.compile(r"(?:(?:[0-9A-F]{2} )+([<>])|[0-9A-F]{2} (\d+|-) (\d+|-)) (\w+
 def facts_of_pages(text: str) -> dict[str, set[str]]:
     """Return the facts of each edition that public pages state, from ``public_pages.txt``.
 
-    Rows with a verdict are left out: the page contradicts the edition or itself.
+    Rows with a verdict are left out, since there the page contradicts the edition or itself.
     """
     found: dict[str, set[str]] = {}
     edition = ""

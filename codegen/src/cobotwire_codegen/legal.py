@@ -10,10 +10,9 @@ from __future__ import annotations
 def odd_character(text: str) -> str:
     """Return the first character that a spec may not contain, in words; empty without one.
 
-    Legal are the characters that can be seen, the space, and the line feed and the tab, which lay
-    out a text of several lines. Illegal are control characters (a terminal executes them),
-    invisible and bidirectional formats (they make a reviewer see another text) and lone surrogates
-    (they have no encoding).
+    Visible characters, spaces, line feeds and tabs are legal. All others are not: control
+    characters (a terminal executes them), invisible and bidirectional formats (they make a reviewer
+    see another text) and lone surrogates (they have no encoding).
     """
     if text.isprintable():
         return ""
@@ -26,7 +25,7 @@ def _legal(letter: str) -> bool:
 
 
 def visible(text: str) -> str:
-    """Return text for a message: every character that is not legal as its escape."""
+    """Return text for a message, with an escape for every character that cannot be printed."""
     return "".join(
         letter if letter.isprintable() else letter.encode("unicode_escape").decode("ascii")
         for letter in text

@@ -31,9 +31,10 @@ def kind(type: Type) -> str:
 
 
 def field_choices(field: Field) -> tuple[int, ...]:
-    """Return the closed list of a field: one entry for a constant; for a list, its elements' list.
+    """Return the legal raw values of a field, if they are listed; for a list, of its elements.
 
-    The cases of a field may be quantities with different choices: those are in their numbers.
+    A constant has one. The cases of a field may be quantities with different choices, so those are
+    in their numbers.
     """
     if field.const is not None:
         return (field.const,)

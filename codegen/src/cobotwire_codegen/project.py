@@ -78,7 +78,7 @@ REVIEWED = ("mycobot", "mycobot280")
 
 
 def committed(root: Path, found: list[Edition]) -> list[Target]:
-    """Return the generated files that git has: what pip installs, and what reviewers read."""
+    """Return the generated files that git tracks: what pip installs, and what reviewers read."""
     package = root / "python" / "cobotwire" / "editions"
     sharings = _sharings(found)
     made = []
@@ -107,8 +107,8 @@ def _library(root: Path, found: Sequence[Edition]) -> Library | None:
 def second_sources(root: Path, found: Sequence[Edition]) -> dict[str, Sources]:
     """Return what the maker's library and pages confirm of each edition.
 
-    For a command that an edition inherits unchanged, they confirm what they confirm of the base. If
-    the library has a class for the edition, only that class counts.
+    What confirms a command of the base also confirms it in an edition that inherits it unchanged.
+    If the library has a class for the edition, only that class counts.
     """
     library, pages = _in_library(root, found), root / "spec" / "public_pages.txt"
     stated = facts_of_pages(pages.read_text(encoding="utf-8")) if pages.is_file() else {}
@@ -132,7 +132,10 @@ def second_sources(root: Path, found: Sequence[Edition]) -> dict[str, Sources]:
 
 
 def confirmed_table(root: Path, found: Sequence[Edition]) -> str:
-    """Return, in Markdown, the share of each edition's facts by source, and without one."""
+    """Return a Markdown table: for each edition, the shares of facts that each source confirms.
+
+    The last column counts the facts that no source confirms.
+    """
     sources = second_sources(root, found)
     rows = [
         "| edition | facts | " + " | ".join(SOURCES) + " | no source |",
@@ -158,7 +161,7 @@ def _in_library(root: Path, found: Sequence[Edition]) -> dict[str, frozenset[str
 
 
 def _servo_bus(root: Path) -> list[Target]:
-    """Return the table by which the diagnosis of noise reads packets of the servo bus."""
+    """Return the table with which the diagnosis of noise reads packets of the servo bus."""
     path = root / SERVO_BUS
     if not path.exists():
         return []
@@ -177,7 +180,7 @@ def _every_c(found: Sequence[Edition]) -> Files:
 
 
 def _reference(root: Path, found: Sequence[Edition]) -> Files:
-    """Return all generated pages of the docs site, also those that are committed."""
+    """Return all generated pages of the docs site, including the committed ones."""
     made = {PurePosixPath("language.md"): language_page()}
     for edition in found:
         made |= {edition.name / path: text for path, text in render_reference(edition).items()}
@@ -221,7 +224,7 @@ def products(root: Path, found: list[Edition], folders: Iterable[str] = PRODUCTS
 
 
 def _sharings(found: list[Edition]) -> dict[str, Sharing]:
-    """Return each edition with its base, bases first."""
+    """Return what each edition shares with its base; bases come first."""
     made: dict[str, Sharing] = {}
     left = {edition.name: edition for edition in found}
     while left:
@@ -233,6 +236,6 @@ def _sharings(found: list[Edition]) -> dict[str, Sharing]:
 
 
 def schema_target(root: Path, found: list[Edition]) -> Target:
-    """Return the schema for editors, next to the files that it describes; git ignores it."""
+    """Return the schema for editors, which is written next to the files that it describes."""
     files = {PurePosixPath("schema.json"): schema_json(found)}
     return Target(root / "spec", files, alone=False)

@@ -73,7 +73,7 @@ def _compact(value: Any) -> str:
 
 
 def _document(edition: Edition) -> Record:
-    """Return what codecs and clients need."""
+    """Return the sections that codecs and clients need."""
     frame = edition.frame
     writer = _Writer(edition)
     return {
@@ -120,7 +120,7 @@ def _document(edition: Edition) -> Record:
 
 
 def _frame_parts(frame: Frame) -> Record:
-    """Return what differs from frames with LEN and CMD of one byte after the header."""
+    """Return how a frame differs from one with LEN and CMD of one byte after the header."""
     record: Record = {}
     if frame.check is not None:
         crc = frame.check.crc
@@ -163,7 +163,7 @@ class _Writer:
         return {"name": type.name, "kind": type.kind, **type.stated(self._reference)}
 
     def command(self, family: str, command: Command) -> Record:
-        """Return a command's record: what is on the wire first, then its description."""
+        """Return a command's record: its properties on the wire first, then its description."""
         return given(
             id=command.id,
             name=command.name,
@@ -223,7 +223,7 @@ class _Writer:
         )
 
     def _reference(self, found: Type | Wire) -> str | Record:
-        """Return a type's name, or its record where the edition's list does not have it."""
+        """Return a type's name, or its record if the edition's lists lack it."""
         if isinstance(found, Wire):
             return found.name if self._wires.get(found.name) == found else _wire(found)
         return found.name if self._types.get(found.name) == found else self.type(found)
@@ -241,7 +241,7 @@ def _address(address: Address) -> Record:
 
 
 def _read_back(field: str, holds: str | int) -> Record:
-    """Return what a field of a query's reply then holds: an argument, or a raw value."""
+    """Return what a field of the query's reply must hold: an argument's value, or a raw value."""
     return {"field": field, "argument" if isinstance(holds, str) else "value": holds}
 
 

@@ -68,7 +68,7 @@ def plain(type: Type | None, name: str, value: object) -> Any:
     if type is None:
         return _number(value)
     if type.kind in ("bits", "bytes", "text", "list"):
-        raise ValueError(f"{name} is not a number, nor a row of numbers")
+        raise ValueError(f"{name} is neither a number nor several numbers")
     raws = raw_values(type, name, value)
     if type.kind == "enum":
         return raws[0]
@@ -76,7 +76,7 @@ def plain(type: Type | None, name: str, value: object) -> Any:
 
 
 def _exact(value: Any, state: State) -> Any:
-    """Return a start value with exact numbers, as everywhere in the document."""
+    """Return a start value as JSON, with exact numbers like the rest of the document."""
     stated = state.start
     if isinstance(stated, tuple):
         return [exact_number(Fraction(part)) for part in stated]
@@ -84,7 +84,7 @@ def _exact(value: Any, state: State) -> Any:
 
 
 def _number(value: object) -> Any:
-    """Return a number, a word or a row as JSON."""
+    """Return a number, a word or a list of them as JSON."""
     if isinstance(value, tuple):
         return [_number(item) for item in value]
     return float(value) if isinstance(value, Fraction) else value

@@ -38,7 +38,7 @@ def _geometry(geometry: Geometry) -> Record:
 
 
 def is_coupled(geometry: Geometry) -> bool:
-    """Return whether a link is turned by anything but the joint of its own number."""
+    """Return whether any link is turned by other joints than the one with its own number."""
     usual = [((number, Fraction(1)),) for number, _ in enumerate(geometry.links, 1)]
     return [link.turned_by for link in geometry.links] != usual
 

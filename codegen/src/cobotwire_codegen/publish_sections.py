@@ -20,7 +20,7 @@ _BY_NAME = ("values", "accepted", "refused")
 
 
 def sections_for_people(edition: Edition) -> Record:
-    """Return what explains the edition: sources, disputes, changes, errata and vectors."""
+    """Return the sections that explain an edition: sources, changes, errata and vectors."""
     return {
         "sources": [_plain(source, edition) for source in _sources(edition)],
         "changes": _plain(edition.changes, edition),

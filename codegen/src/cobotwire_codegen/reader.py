@@ -1,4 +1,4 @@
-"""Reads one mapping of the spec by its description, and reports what does not fit as problems.
+"""Reads one mapping of the spec by its description, and reports problems.
 
 A reader does not stop at the first problem: it records the problem and returns a harmless stand-in,
 so that one run reports every problem.
@@ -71,7 +71,10 @@ class Reader:
 
 
 def chosen(node: Node, choice: Choice, what: str, problems: list[Problem]) -> str | None:
-    """Return the key that decides the kind of a change; report a problem if not exactly one."""
+    """Return the key that decides the kind of a change.
+
+    Report a problem if there is not exactly one such key.
+    """
     if not isinstance(node, Mapping):
         Reader(node, choice, what, problems)
         return None

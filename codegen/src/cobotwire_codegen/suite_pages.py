@@ -1,7 +1,7 @@
-"""The pages of the conformance test suite, which the package itself lists.
+"""Gets the pages of the conformance test suite from the package.
 
-The generator does not import the package: it runs it, in a process of its own, so that the pages
-are made from the files as they are now.
+The generator does not import the package. It runs the package in a process of its own, so that the
+pages are made from the files as they are now.
 """
 
 from __future__ import annotations

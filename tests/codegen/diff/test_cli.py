@@ -44,12 +44,12 @@ def test_report_groups_findings_by_level() -> None:
     assert result.exit_code == 1
     assert result.output == (
         "wire (1): breaks the protocol: old and new peers misunderstand each other\n"
-        "  id-changed: small/commands/jog: the id was 0x22, is 0x23: the request reaches another "
-        "command, or none\n"
+        "  id-changed: small/commands/jog: the id changed from 0x22 to 0x23: requests reach "
+        "another command, or none\n"
         "api (1): breaks callers of the generated Python\n"
         "  class-renamed: small/types/axis: the class Axis is now Way\n"
         "docs (1): words and evidence\n"
-        "  doc-changed: small/frame: was: A frame.; is: Frame.\n"
+        '  doc-changed: small/frame: changed from "A frame." to "Frame."\n'
         "1 wire, 1 api, 1 docs; version bump: major (before 1.0: minor)\n"
     )
 
@@ -107,7 +107,9 @@ def test_diff_prints_json() -> None:
                 "where": "small/commands/jog",
                 "old": "0x22",
                 "new": "0x23",
-                "message": "the id was 0x22, is 0x23: the request reaches another command, or none",
+                "message": (
+                    "the id changed from 0x22 to 0x23: requests reach another command, or none"
+                ),
             }
         ],
         "waived": [],
@@ -119,10 +121,10 @@ def test_diff_prints_markdown() -> None:
     result = run(BREAKING, ("A frame.", "One *frame*."), words=("--format", "markdown"))
     assert result.output == (
         "### Wire-breaking\n\n"
-        "- `small/commands/jog`: the id was 0x22, is 0x23: the request reaches another command, or "
-        "none (`id-changed`)\n\n"
+        "- `small/commands/jog`: the id changed from 0x22 to 0x23: requests reach another command, "
+        "or none (`id-changed`)\n\n"
         "### Docs\n\n"
-        "- `small/frame`: was: A frame.; is: One \\*frame\\*. (`doc-changed`)\n\n"
+        '- `small/frame`: changed from "A frame." to "One \\*frame\\*." (`doc-changed`)\n\n'
         "1 wire, 1 docs; version bump: major (before 1.0: minor)\n"
     )
 
@@ -132,8 +134,8 @@ def test_waived_findings_are_shown_and_not_counted() -> None:
     assert result.exit_code == 0
     assert result.output == (
         "waived (1): accepted, and not counted\n"
-        "  id-changed: small/commands/jog: the id was 0x22, is 0x23: the request reaches another "
-        "command, or none\n"
+        "  id-changed: small/commands/jog: the id changed from 0x22 to 0x23: requests reach "
+        "another command, or none\n"
         "    because: No firmware ever had it.\n"
         "no difference except those waived\n"
     )
@@ -201,7 +203,7 @@ def test_diff_with_an_unknown_source_exits_with_2() -> None:
 def test_diff_lists_rules_and_help_names_the_exit_codes() -> None:
     listed = CliRunner().invoke(main, ["diff", "--rules"])
     assert listed.exit_code == 0
-    assert "  id-changed: the id was OLD, is NEW: the request reaches another" in listed.output
+    assert "  id-changed: the id changed from OLD to NEW: requests reach another" in listed.output
     assert "Exit codes: 0 no finding fails;" in CliRunner().invoke(main, ["diff", "--help"]).output
 
 

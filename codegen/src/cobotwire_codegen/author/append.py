@@ -40,7 +40,7 @@ def appended(text: str, name: str, key: str, entry: list[str], blank: bool) -> s
 
 
 def _end(lines: list[str], root: Mapping, key: str) -> int:
-    """Return the line, from 0, after the end of a key's value."""
+    """Return the index of the first line after a key's value."""
     here = root.keys[key].line
     later = [place.line for place in root.keys.values() if place.line > here]
     if not later:

@@ -21,7 +21,7 @@ _NO_TEXT = {"true", "false", "null", "yes", "no", "on", "off", "y", "n"}
 
 @dataclass(frozen=True, slots=True)
 class Draft:
-    """A new command. Each field is a tuple: its name, its type and whether it is an echo."""
+    """A new command. Each field of request and reply is a name, a type, and whether it echoes."""
 
     name: str
     id: int

@@ -129,7 +129,7 @@ def _quantity(type: Quantity, number: int) -> object:
         return _float(type, number, share)
     lowest, highest = (int(bound) for bound in type.bounds)
     if lowest <= 0 <= highest:
-        # Numbers that a float can hold: a vector states them as decimals.
+        # A vector states the value as a decimal, which is read as a float: stay in its exact range.
         lowest, highest = max(lowest, -MOST), min(highest, MOST)
     raw = lowest + ceil((highest - lowest) * share) or highest
     data = type.wire.bytes_of(raw)

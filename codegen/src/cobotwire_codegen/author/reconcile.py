@@ -52,7 +52,7 @@ class News:
 def captured(given: bytes, direction: str) -> list[Packet]:
     """Return the packets of a capture; raw bytes and hex text are one packet.
 
-    ``direction`` is what the capture holds if it does not state it.
+    ``direction`` is that of the packets for which the capture states none.
 
     Raises:
         ValueError: the hex text has half a byte, or the pcapng file is damaged.

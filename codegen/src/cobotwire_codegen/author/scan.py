@@ -28,7 +28,7 @@ class Seen:
 
     @property
     def kind(self) -> tuple[int, int, str]:
-        """What the frames of one variant have in common."""
+        """The id, data length and direction, which all frames of one variant share."""
         return self.id, len(self.data), self.direction
 
 

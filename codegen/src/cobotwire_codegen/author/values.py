@@ -45,12 +45,11 @@ def known_values(edition: Edition, frames: Sequence[Seen]) -> Known:
 
 
 def fitting(edition: Edition, item: Guess, frames: Sequence[Seen], known: Known) -> tuple[str, str]:
-    """Return the type that fits the values of some bytes best, and why.
+    """Return the name of the type that fits the values of some bytes best, and why.
 
-    Two empty texts if none fits.
-
-    A known number that had the same values at the same time counts most, then the type with the
-    narrowest range that holds all of the values.
+    A known number that had the same values at the same time is preferred; otherwise the type with
+    the narrowest range that holds all of the values. The name is empty if no type fits. Then the
+    reason is empty too, unless a known number of another size or scale had the same values.
     """
     pieces = [seen.data[item.first : item.first + item.width] for seen in frames]
     if item.kind not in ("word", "byte", "enum", "flag") or len({*pieces}) < (
@@ -84,7 +83,10 @@ def fitting(edition: Edition, item: Guess, frames: Sequence[Seen], known: Known)
 def _following(
     pieces: Sequence[bytes], frames: Sequence[Seen], known: Known
 ) -> tuple[str, Quantity | None, Fraction]:
-    """Return which known number the values follow, its type, and their scale; or nothing."""
+    """Return the key and type of the known number that the values follow, and the values' scale.
+
+    The key is empty, and the type None, if they follow no known number.
+    """
     raws = [int.from_bytes(piece, "big", signed=len(piece) > 1) for piece in pieces]
     for key, (type, at, numbers) in known.items():
         before = [bisect(at, seen.offset) - 1 for seen in frames]
@@ -111,7 +113,7 @@ def _width(type: Quantity | Enum | Flag) -> Fraction:
 
 
 def pairs(groups: Sequence[Sequence[Seen]]) -> Iterator[tuple[Seen, Seen]]:
-    """Yield a frame of each of two messages; the second one repeats what the first one sets."""
+    """Yield pairs of messages, each by its first frame; the second repeats the first one's data."""
     for stored in groups:
         for reported in groups:
             if stored[0].id == reported[0].id or len(stored[0].data) != len(reported[0].data):

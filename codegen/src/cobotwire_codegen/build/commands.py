@@ -35,7 +35,7 @@ def build_family(
 def build_accepted(
     node: Node | None, replies: tuple[Variant, ...], reader: Reader
 ) -> tuple[int, ...]:
-    """Return the raw values of the last field of a reply that report success."""
+    """Return the raw values with which a reply's last field reports success."""
     if node is None:
         return ()
     subject = f"accepted of {reader.what}"
@@ -77,7 +77,7 @@ class _Acks:
             if name not in known and name not in parts.gone:
                 reader.problem("unknown-command", f"there is no command {name}")
         if field is not None:
-            # Both a frame with one byte and a bare frame have been observed.
+            # Arms have been observed to send either this one field or a frame without data.
             self.variants = ((build_field(field, "reply", reader, types),), ())
         elif fields:
             full = tuple(build_field(node, "reply", reader, types) for node in fields)

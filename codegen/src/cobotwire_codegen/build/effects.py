@@ -21,8 +21,9 @@ from cobotwire_codegen.model import State as KeptState
 from cobotwire_codegen.model.commands import named_fields
 from cobotwire_codegen.reader import Reader
 
-# The keys of an effect that are neither its verb, which holds the subject, nor an option.
-_BESIDE = ("at", "assumed")
+# Keys that effects of several kinds may have. Of the others, one is the verb (such as `stores`),
+# which states the kind and holds the subject; the rest are the verb's options.
+_COMMON = ("at", "assumed")
 
 
 def build_state(
@@ -101,7 +102,7 @@ def _of_verb(verb: str, reader: Reader, command: Command, problems: list[Problem
     options = tuple(
         (name, _plain(reader, key))
         for name, key in keys.items()
-        if name not in (verb, *_BESIDE, "cases") and reader.node(key) is not None
+        if name not in (verb, *_COMMON, "cases") and reader.node(key) is not None
     )
     subject = reader.get(keys[verb])
     if record is ByCase:
@@ -136,7 +137,10 @@ def _plain(reader: Reader, key: Key[Any], *others: type) -> object:
 def _pairs(
     node: Node, at: Iterable[str], reader: Reader, command: Command, verb: str
 ) -> tuple[tuple[str, object], ...]:
-    """Return each field with its state; if only the state is named, the only field that fits."""
+    """Return pairs of a field and its state.
+
+    If the spec names only a state, pair it with the single field that can hold it.
+    """
     if isinstance(node, Mapping):
         values = Named(Name(LOWER), LOWER, ("empty-list", "name a state"))
         named = values.read(node, f"{verb} of {reader.what}", reader.problem)
@@ -164,7 +168,7 @@ def reported(command: Command) -> dict[str, Field | None]:
     """Return the fields of a reply that report something: no constants, counts or echoes.
 
     If several variants have a field of that name, it is the field of the first variant, the full
-    one. A field of a text has no type.
+    one. The fields of a text reply have no type, so they map to None.
     """
     text = command.text.fields if command.text is not None else ()
     fields = (field for variant in reversed(command.replies) for field in variant)
@@ -176,7 +180,7 @@ def reported(command: Command) -> dict[str, Field | None]:
 
 
 def given(command: Command) -> dict[str, Field | None]:
-    """Return the arguments of a command; a part of its text has no type."""
+    """Return the arguments of a command; those of its text have no type, so they map to None."""
     found: dict[str, Field | None] = {
         name: fields[0] for name, fields in named_fields(command.requests).items()
     }

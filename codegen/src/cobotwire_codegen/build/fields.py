@@ -56,7 +56,7 @@ def _variant(nodes: tuple[Node, ...], direction: Direction, outer: Reader, types
 
 
 def _counted(fields: Variant, readers: list[Reader]) -> Variant:
-    """Return the fields; some may count the elements of others."""
+    """Return the fields; ``counts`` of each names the field of which it counts the elements."""
     counts: dict[str, str] = {}
     earlier: dict[str, Field] = {}
     to_the_end = 0
@@ -66,7 +66,7 @@ def _counted(fields: Variant, readers: list[Reader]) -> Variant:
         if name and (name not in earlier or not _can_count(earlier[name], field)):
             message = (
                 f"count: {name} must be an earlier whole number of the message that can hold "
-                f"{field.type.sizes[1]}, and {field.name} a type with a size that varies"
+                f"{field.type.sizes[1]}, and the type of {field.name} must vary in size"
             )
             reader.problem("bad-count", message, place)
         elif name:

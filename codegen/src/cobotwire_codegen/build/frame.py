@@ -53,7 +53,7 @@ def build_frame_format(parts: Parts, place: Place, problems: list[Problem]) -> F
 
 
 def _check_frame(frame: Reader, built: Frame, known: int) -> None:
-    """Report what is wrong with a frame format; ``known`` problems were found before it."""
+    """Report what is wrong with a frame format; ``known`` counts the problems found before."""
     stuffing = frame.get(language.Frame.stuffing) if frame.node(language.Frame.stuffing) else None
     for shown, limit in beyond_language(built, stuffing):
         if not any(limit.message in problem.message for problem in frame.problems[known:]):

@@ -133,7 +133,7 @@ def _value(old: Type, new: Type, value: object, constant: bool) -> object:
 
 
 def _nearest(old: Scalar, new: Quantity, value: object) -> object:
-    """Return the legal value of a quantity that is nearest to a value of the old one."""
+    """Return the legal value of the new quantity that is nearest to a value of the old type."""
     if _same_bytes(old, new, value):
         return value
     number = value if isinstance(value, int | Fraction) else None

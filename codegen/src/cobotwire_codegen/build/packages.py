@@ -23,7 +23,7 @@ def packaged_edition(base: str, place: Place) -> Path:
     """Return the edition file that a package ships.
 
     Args:
-        base: the package and the edition, as ``cobotwire:mycobot280``.
+        base: the package and the edition, such as ``cobotwire:mycobot280``.
         place: where the spec names them.
 
     Raises:

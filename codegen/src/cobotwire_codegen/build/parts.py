@@ -233,7 +233,7 @@ def _add_robot(parts: Parts, reader: Reader) -> None:
 
 
 def _over(before: Node, node: Node) -> Node:
-    """Return a mapping with the keys of another one in place of its own."""
+    """Return ``before`` updated with the keys of ``node``; ``node`` if one is not a mapping."""
     if not (isinstance(before, Mapping) and isinstance(node, Mapping)):
         return node
     return Mapping(node.place, before.entries | node.entries, before.keys | node.keys)

@@ -1,4 +1,4 @@
-"""Derives the query that reads a command back, from the effects of both; builds ``samples``."""
+"""Derives the query that reads back what a command set, from their effects; builds ``samples``."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from cobotwire_codegen.model import Command, Effect, Family, Field, ReadBack, Sa
 from cobotwire_codegen.reader import Reader
 from cobotwire_codegen.wire import raw_values
 
-# The state of a part that moves.
+# The state that a motion changes, by the part that moves.
 MOVED = {"joints": "angles", "joint": "angles", "end": "coords", "gripper": "opening"}
-# The state that a control of the motion sets.
+# The value that each of these commands gives to the state `paused`.
 _CONTROLLED = {"pause": True, "resume": False}
 
 
@@ -40,7 +40,7 @@ def with_read_back(families: Sequence[Family], encoder_zero: int | None) -> tupl
     queries = [c for family in families for c in family.commands if c.safety == "query"]
     found = []
     for family in families:
-        # If several queries report the same, queries of the command's own family come first.
+        # If several queries report the same state, prefer those of the command's own family.
         near = sorted(queries, key=lambda query: query not in family.commands)
         commands = (replace(c, read_by=_read_back(c, near, encoder_zero)) for c in family.commands)
         found.append(replace(family, commands=tuple(commands)))
@@ -74,7 +74,7 @@ def _read_back(
 def _short(
     pairs: tuple[tuple[str, str | int], ...], command: Command, query: Command
 ) -> tuple[tuple[str, str | int], ...]:
-    """Return the pairs; none if they pair exactly the equal names, which is the default."""
+    """Return the pairs, or () for the default: each shared name is paired with itself."""
     shared = reported(query).keys() & given(command).keys()
     same = {name for name, source in pairs if name == source}
     return () if len(same) == len(pairs) and same == shared else pairs

@@ -68,13 +68,13 @@ def _geometry(node: Node, joints: int, problems: list[Problem]) -> Geometry:
         links.append(_link(row, _after(links), problems))
     turning = {joint for link in links for joint, share in link.turned_by if share}
     if turning != set(range(1, joints + 1)):
-        message = f"the geometry must have a link that turns, for each of {joints} joints"
+        message = f"each of the {joints} joints must turn a link of the geometry, and no other"
         reader.problem("bad-number", message)
     return Geometry(tuple(links), reader.get(spec.doc))
 
 
 def _after(links: Iterable[Link]) -> int:
-    """Return the first joint after those that turn links."""
+    """Return the joint after the highest one that turns a link."""
     return max((joint for link in links for joint, _ in link.turned_by), default=0) + 1
 
 
@@ -125,7 +125,7 @@ def _gripper(node: Node, joints: int, problems: list[Problem]) -> Gripper:
     reader = Reader(node, spec, "the gripper", problems)
     closed, open_ = reader.get(spec.closed), reader.get(spec.open_)
     if closed == open_:
-        reader.problem("bad-number", "the gripper must have other readings closed than open")
+        reader.problem("bad-number", "the gripper must have different readings closed and open")
     return Gripper(reader.get(spec.speed), closed, open_, reader.get(spec.doc))
 
 
@@ -146,7 +146,7 @@ def _error_codes(node: Node, joints: int, problems: list[Problem]) -> ErrorCodes
     reader = Reader(node, spec, "the error codes", problems)
     limits = reader.get(spec.joint_limits)
     if len(limits) != joints or min(limits, default=1) < 1:
-        message = f"the error codes must have a number above 0 for each of {joints} joints"
+        message = f"joint_limits must list one error code above 0 for each of {joints} joints"
         reader.problem("bad-number", message, reader.place_of(spec.joint_limits))
     return ErrorCodes(
         limits,

@@ -43,6 +43,6 @@ def _build(reader: Reader, class_name: str, silence_ms: int, *, reply: bool) -> 
     # A reply ends with a field, then silence. Between two fields there must be a word, or a reader
     # could not tell where the first one ends.
     if pieces[1::2] != list(docs) or (reply and suffix) or not all(prefixes[0 if reply else 1 :]):
-        message = "the text must be `word {field}` in turn, with the fields as listed"
+        message = "the text must alternate words and `{field}`, with the fields in listed order"
         reader.problem("bad-text", message)
     return Text(reader.place, class_name, tuple(prefixes), tuple(docs.items()), suffix, silence_ms)

@@ -72,8 +72,8 @@ def _order(command: Command) -> Iterator[Problem]:
     needed = [command.needs(name) for name in given]
     for index, name in enumerate(given):
         if needed[index] and not all(needed[:index]):
-            message = f"{name} of {command.name} must be given, so it comes before the arguments "
-            yield Problem(command.place, "bad-arguments", f"{message}that can be left out")
+            message = f"{name} of {command.name} is required; list it before optional arguments"
+            yield Problem(command.place, "bad-arguments", message)
 
 
 RULES = (calls_decide, order_complete)

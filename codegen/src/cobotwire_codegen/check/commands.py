@@ -49,7 +49,7 @@ def payload_fits(edition: Edition) -> Iterator[Problem]:
                 if length > edition.frame.maximum_data:
                     message = (
                         f"the {direction} of {command.name} has {length} data bytes; the frame "
-                        f"carries {edition.frame.maximum_data}"
+                        f"can carry {edition.frame.maximum_data}"
                     )
                     yield Problem(command.place, "payload-too-long", message)
 

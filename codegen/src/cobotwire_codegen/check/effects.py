@@ -83,7 +83,7 @@ def _wrong_keys(effect: Effect) -> Iterator[str]:
     if effect.verb == "moves":
         allowed = _MOTIONS[effect.what]
         if tuple(sorted(keys - {"speed", "keeps"})) not in map(tuple, map(sorted, allowed)):
-            yield f"`moves: {effect.what}` needs {' or '.join(map(_listed, allowed))}, and no more"
+            yield f"`moves: {effect.what}` needs exactly {' or '.join(map(_listed, allowed))}"
         if "keeps" in keys and (effect.what != "end" or "until" not in keys):
             yield "only `moves: end` with `until` has the key `keeps`"
         if effect.what == "end" and "to" in keys and not isinstance(effect.option("to"), str):
@@ -102,22 +102,22 @@ def _wrong_keys(effect: Effect) -> Iterator[str]:
 def _wrong_sizes(
     effect: Effect, command: Command, arguments: Mapping[str, Field | None]
 ) -> Iterator[str]:
-    """Yield the arguments that are rows but should be single numbers, or the reverse."""
+    """Yield arguments that are value types but should be single numbers, or the reverse."""
     options = {key: name for key, name in effect.options if isinstance(name, str)}
     rows = [options[key] for key in ("from", "near") if key in options]
     single = [*effect.at, *(options[key] for key in _SINGLE if key in options)]
     single += [effect.what] if effect.verb == "selector" else []
-    # The target of all joints may be a row, or one number for all.
+    # The target of all joints may be a value type, or one number for all.
     if "to" in options and effect.what != "joints":
         (rows if effect.what == "end" and "about" not in options else single).append(options["to"])
     for name in (*rows, *single):
         field, kinds = arguments.get(name), ("value",) if name in rows else _NUMBERS
         if name in arguments and (field is None or field.type.kind not in kinds):
-            yield f"{name} must be {'a row' if name in rows else 'a single number'}"
+            yield f"{name} must be a {'value type' if name in rows else 'single number'}"
     if effect.verb == "computes":
         last = list(reported(command).values())[-1:]
         if not last or last[0] is None or last[0].type.kind != "value":
-            yield "the last field of the reply must be a row, which is computed"
+            yield "the last field of the reply holds what is computed; it must be a value type"
 
 
 def _listed(keys: Sequence[str]) -> str:
@@ -146,7 +146,7 @@ def _wrong_cases(effect: Effect, selector: Field | None) -> Iterator[str]:
     for name, raw in members.items():
         if raw not in found:
             what = f"{name} of {selector.name} has no case"
-            yield f"{what}; if its effect is not known: {{unknown: why}}"
+            yield f"{what}; if its effect is not known, write {{unknown: why}}"
 
 
 def _unknown_states(effect: Effect, states: Mapping[str, State]) -> Iterator[str]:

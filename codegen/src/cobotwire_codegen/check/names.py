@@ -1,4 +1,7 @@
-"""Rules for names: they are unique. What a name may be is stated in ``language/names.py``."""
+"""Rules for names: they are unique, and types of one class agree.
+
+``language/names.py`` states what a name may be.
+"""
 
 from __future__ import annotations
 
@@ -24,14 +27,18 @@ def commands_apart(edition: Edition) -> Iterator[Problem]:
 
 
 def classes_agree(edition: Edition) -> Iterator[Problem]:
-    """Report types that share a class but not its parts; an enum never shares its class."""
+    """Report types with the same class but different parts, and enums with another type's class."""
     seen: dict[str, Type] = {}
     for type in edition.types:
         if not type.class_name:
             continue
         first = seen.setdefault(type.class_name, type)
         if first is not type and _parts(first) != _parts(type):
-            message = f"{type.class_name} has different parts at {first.place}"
+            message = f"the class {type.class_name} has other parts at {first.place}"
+            if first.members or type.members:
+                message = (
+                    f"the class {type.class_name} is used at {first.place}; an enum needs its own"
+                )
             yield Problem(type.place, "class-differs", message)
 
 

@@ -16,7 +16,7 @@ def _parts(field: Field) -> int:
 
 
 def _row(parts: int) -> Callable[[Command], bool]:
-    """Return the rule that each request has one row of ``parts`` numbers, and further fields."""
+    """Return the rule that each request has one field of ``parts`` numbers, and further fields."""
 
     def has(command: Command) -> bool:
         return bool(parts) and all(
@@ -64,7 +64,7 @@ def _reads_flag(command: Command) -> bool:
 def _reads_power(command: Command) -> bool:
     if _reads_flag(command):
         return True
-    # 1 is what find_setter looks for; every other value is false in a condition.
+    # Table.find_setter looks for the value 1; every other member must be false in a condition.
     return command.requests == ((),) and all(
         len(variant) == 1
         and isinstance(variant[0].type, Enum)
@@ -123,7 +123,7 @@ def _reached(joints: int) -> Callable[[Command], bool]:
 
 
 def _coordinates(edition: Edition) -> int:
-    """Return the number of coordinates: the length of the row in a command with that role."""
+    """Return the number of coordinates in the first command with a role about coordinates."""
     for command in edition.commands:
         messages = {"coordinate targets": command.requests, "coordinates": command.replies}
         for variant in messages.get(command.role, ()):
@@ -134,16 +134,19 @@ def _coordinates(edition: Edition) -> int:
 
 
 def _needs(edition: Edition) -> dict[str, tuple[str, Callable[[Command], bool]]]:
-    picks = "an argument must select the part, and another with a unit or scale be the target"
+    picks = (
+        "one argument must select the joint or axis; another one, with a unit or a scale, must be "
+        "the target"
+    )
     coordinates = _coordinates(edition)
-    alike = "as many in every command with this role or the one for coordinates"
+    alike = "the roles coordinates and coordinate targets need the same number of them"
     return {
         "joint targets": (
-            "it must take a row with a number for each joint, and a speed",
+            "it must take a value type with a number for each joint, and a speed",
             _row(edition.joints),
         ),
         "coordinate targets": (
-            f"it must take a row of coordinates, {alike}, and a speed",
+            f"it must take a value type of coordinates, and a speed; {alike}",
             _row(coordinates),
         ),
         "joint target": (picks, _picked),
@@ -169,7 +172,7 @@ def _needs(edition: Edition) -> dict[str, tuple[str, Callable[[Command], bool]]]
             _reads_row(edition.joints),
         ),
         "coordinates": (
-            f"it must take no arguments and reply with a row of coordinates, {alike}",
+            f"it must take no arguments and reply with a value type of coordinates; {alike}",
             _reads_row(coordinates),
         ),
         "motion ended": (

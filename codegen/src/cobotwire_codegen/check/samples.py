@@ -22,7 +22,7 @@ def samples_fit(edition: Edition) -> Iterator[Problem]:
 
 
 def agreement_fits(edition: Edition) -> Iterator[Problem]:
-    """Report `agrees_with` entries that are not between queries."""
+    """Report `agrees_with` entries if one of the two commands is not a query."""
     queries = {command.name for command in edition.commands if command.safety == "query"}
     for command in edition.commands:
         for name in command.agrees_with:

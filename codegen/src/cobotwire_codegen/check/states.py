@@ -11,7 +11,7 @@ from cobotwire_codegen.language.words import BUILT_IN
 from cobotwire_codegen.model import Command, Edition, Effect, Field, Quantity, State, Type
 from cobotwire_codegen.publish_effects import plain
 
-# The built-in state that is true or false, and that which has a value for each joint or axis.
+# Built-in states that are true or false, then those with a value for each joint, or each axis.
 _SWITCHES = ("powered", "connected", "free", "held")
 _JOINT_ROWS = ("angles", "planned_angles", "speeds", "held", "lowest", "highest")
 _AXIS_ROWS = ("coords", "base_coords", "planned_coords")
@@ -30,7 +30,7 @@ def states_fit(edition: Edition) -> Iterator[Problem]:
                 )
                 yield Problem(state.place, "unknown-type", message)
         if state.name in BUILT_IN:
-            message = f"{state.name} is the arm's own state, which no edition declares"
+            message = f"{state.name} is a built-in state of every arm; remove its declaration"
             yield Problem(state.place, "bad-state", message)
         if state.start is None:
             continue
@@ -94,7 +94,7 @@ def no_contradictions(edition: Edition) -> Iterator[Problem]:
             yield Problem(effect.place, "bad-effect", message)
 
 
-# The state that begins as the servos of the edition say.
+# The state that starts with the registers that `servos` of the edition states.
 REGISTERS = "registers"
 
 
@@ -175,11 +175,11 @@ def _unlike_built_in(field: Field | None, name: str, effect: Effect, joints: int
         yield f"{name} is not a text"
     elif field is not None and field.type.kind in ("value", "list"):
         if effect.at or not row:
-            yield f"{field.name} is a row, but {name} is one value"
+            yield f"{field.name} has several values, but {name} has one"
         elif name in _JOINT_ROWS and size != joints:
             yield f"{field.name} has {size} values, but the arm has {joints} joints"
     elif field is not None and row and not effect.at and name not in _AS_ONE[effect.verb]:
-        yield f"{field.name} is one value, but {name} is a row; `at` can choose a value of it"
+        yield f"{field.name} has one value, but {name} has several; `at` can choose one of them"
 
 
 def _unlike(field: Field | None, state: State, at: Sequence[str], name: str) -> Iterator[str]:
@@ -208,7 +208,7 @@ def _beyond(
 ) -> Iterator[str]:
     """Yield the indices of a command that a state does not have.
 
-    If ``at`` names no argument for the last index, the command has a row: a value for each.
+    If ``at`` names no argument for the last index, the command has a value for each of its values.
     """
     at = effect.at
     if len(state.each) - len(at) not in (0, 1):
@@ -224,7 +224,8 @@ def _beyond(
             yield f"{name} goes beyond {each}, the index of {state.name}"
     last = types.get(state.each[-1]) if len(at) < len(state.each) else None
     if last and ends(last)[0] != 1:
-        yield f"a row begins with index 1, but {last.name} with {ends(last)[0]}"
+        first = f"{last.name} starts at {ends(last)[0]}"
+        yield f"a field with a value for each {last.name} needs indices from 1, but {first}"
 
 
 def _inside(type: Type, index: Type) -> bool:

@@ -1,4 +1,4 @@
-"""The command ``cobotwire-gen``, with one module for each verb."""
+"""The command ``cobotwire-gen``, with one module for each subcommand."""
 
 from cobotwire_codegen.cli.app import main
 

@@ -1,4 +1,4 @@
-"""Assembles the verbs of the command."""
+"""Assembles the subcommands."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ _EPILOG = (
     is_eager=True,
     expose_value=False,
     callback=same_version.print_version,
-    help="Show the version; fail if cobotwire is installed in another one.",
+    help="Show the version; fail if the installed cobotwire has another version.",
 )
 @click.pass_context
 def main(
@@ -56,8 +56,8 @@ def main(
 ) -> None:
     """Generate software from a protocol in YAML.
 
-    Without a verb, generate this project's own files (editions, reference, schema) from spec/.
-    With --check, report files that are stale, missing or left over instead.
+    Without a subcommand, generate the files of this project (editions, reference, schema) from
+    spec/. With --check, report files that are stale, missing or left over instead.
     """
     same_version.check()
     if ctx.invoked_subcommand is None:
@@ -65,7 +65,7 @@ def main(
         ctx.invoke(generate, **chosen, root=root)
 
 
-VERBS = (
+SUBCOMMANDS = (
     build,
     render,
     check,
@@ -82,5 +82,5 @@ VERBS = (
     watch,
     lsp,
 )
-for verb in VERBS:
-    main.add_command(verb)
+for subcommand in SUBCOMMANDS:
+    main.add_command(subcommand)

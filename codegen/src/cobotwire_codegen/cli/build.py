@@ -39,7 +39,8 @@ RENDERERS: dict[str, Callable[[Edition, Path | None], Files]] = {
     "--wireshark": lambda edition, own: render_wireshark([edition], own),
     "--vectors": lambda edition, own: render_shared_vectors([edition]),
 }
-# Wireshark's folder for plugins may contain other files, and JSON files have no mark of their own.
+# These folders may contain other files: Wireshark's has other plugins, and JSON files carry no mark
+# that shows whether they were generated.
 SHARED = ("--wireshark", "--vectors")
 
 

@@ -57,9 +57,9 @@ def add(file: str, edition_file: str | None, dry_run: bool, root: str) -> None:
 
     FILE is what `cobotwire survey` or `cobotwire conform device --json` wrote. It becomes one YAML
     file in the folder evidence, which the edition then names. Its frames become vectors. A fact
-    that it contradicts is disputed from then on; what it confirms raises the confidence.
+    that it contradicts becomes disputed; confirming a disputed fact raises the confidence in it.
 
-    FILE may come from a stranger: sizes, names, values and frames are checked. A fact is taken only
+    FILE need not be trusted: sizes, names, values and frames are checked. A fact is accepted only
     if its frames are in the recording. A confirmed fact must have frames of its command.
 
     Exit codes: 0 success; 2 FILE or the spec is wrong, and nothing was written.
@@ -107,9 +107,9 @@ def _show(home: Path, before: Edition, after: Edition, given: Submitted, entry: 
     if given.table not in ("", sha256(edition_json(with_used_types(before)).encode()).hexdigest()):
         click.echo("The arm was compared with another version of the edition.")
     for name, reason in list(entry.refused.items())[:_MOST_REFUSED]:
-        click.echo(f"not taken: {name}: {reason}")
+        click.echo(f"not accepted: {name}: {reason}")
     if len(entry.refused) > _MOST_REFUSED:
-        click.echo(f"not taken: {len(entry.refused) - _MOST_REFUSED} more")
+        click.echo(f"not accepted: {len(entry.refused) - _MOST_REFUSED} more")
     for _, line in report.text(apply_waivers(diff(before, after), ())):
         click.echo(line)
 

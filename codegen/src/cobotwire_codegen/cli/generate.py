@@ -1,4 +1,4 @@
-"""``cobotwire-gen`` without a verb: generate this project's own files."""
+"""``cobotwire-gen`` without a subcommand: generate this project's own files."""
 
 from __future__ import annotations
 
@@ -27,10 +27,11 @@ from cobotwire_codegen.suite_pages import SuiteError
 @click.option("--rust-data", is_flag=True)
 @root_option
 def generate(check_only: bool, with_products: bool, rust_data: bool, root: str) -> None:
-    """Generate what is committed, the editions and their reference, and the schema for editors.
+    """Generate the committed files (editions and their reference), and the schema for editors.
 
-    With --products, also generate what is not committed: the other pages of the docs site, output
-    targets, the editions of the Rust client. With --rust-data, generate only the latter.
+    With --products, also generate the files that are not committed: the other pages of the docs
+    site, output targets, the editions of the Rust client. With --rust-data, generate only the
+    editions of the Rust client.
     """
     if rust_data and with_products:
         raise click.UsageError("--products includes the data of --rust-data: give one of them")

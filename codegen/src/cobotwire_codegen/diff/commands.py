@@ -21,7 +21,7 @@ def matched_commands(old: Edition, new: Edition) -> Matched[Command]:
 
 
 def _message(command: Command) -> tuple[Any, ...]:
-    """Return what is visible of a command on the wire."""
+    """Return the properties of a command that are visible on the wire."""
     variants = tuple(
         tuple(
             tuple(word for field in variant for word in wire_shape(field.type))
@@ -77,7 +77,7 @@ def _command(where: str, old: Command, new: Command) -> Iterator[Finding]:
     if old.event != new.event:
         yield finding("event-changed", where, words.yes(old.event), words.yes(new.event))
     if old.accepted != new.accepted:
-        shown = [", ".join(map(str, side.accepted)) or "all but 0" for side in (old, new)]
+        shown = [_success(side) for side in (old, new)]
         yield finding("accepted-changed", where, *shown)
     if old.alias != new.alias:
         shown = [f"that of {side.alias}" if side.alias else "its own" for side in (old, new)]
@@ -93,6 +93,11 @@ def _command(where: str, old: Command, new: Command) -> Iterator[Finding]:
         yield finding("versions-changed", where, *map(words.firmware, (old.firmware, new.firmware)))
     yield from prose.disputes(where, old.disputed, new.disputed)
     yield from prose.history(where, old.changes, new.changes)
+
+
+def _success(command: Command) -> str:
+    numbers = ", ".join(map(str, command.accepted))
+    return f"the status {numbers}" if numbers else "any status except 0"
 
 
 def _messages(where: str, old: Command, new: Command, known: Known) -> Iterator[Finding]:
@@ -119,7 +124,7 @@ def _messages(where: str, old: Command, new: Command, known: Known) -> Iterator[
 
 
 def _shared_ids(matched: Matched[Command]) -> Iterator[Finding]:
-    """Report a change in the order of commands that share an id: the first one names a frame."""
+    """Report a changed order of commands that share an id: the first one names the frames."""
     stayed = [j for _, j in matched.places]
     for id in dict.fromkeys(command.id for _, command in matched.pairs):
         before = [j for j in stayed if matched.new[j].id == id]

@@ -76,7 +76,7 @@ def _edition(old: Edition, new: Edition) -> Iterator[Finding]:
 
 
 def _bases(old: Edition, new: Edition) -> tuple[str, str]:
-    """Return the base of each edition; if they are equal, all bases of each, which may differ."""
+    """Return the base of each edition; if these are equal, each edition's whole chain of bases."""
     if old.base != new.base:
         return old.base, new.base
     return ", ".join(old.bases), ", ".join(new.bases)

@@ -32,7 +32,8 @@ def frame_changes(old: Frame, new: Frame) -> Iterator[Finding]:
 def _addresses(old: tuple[Address, ...], new: tuple[Address, ...]) -> Iterator[Finding]:
     where = "frame/addresses"
     matched = match(old, new, lambda member: member.value)
-    # Without addresses, frames have no address byte; with addresses, a client sends the first.
+    # Without addresses, frames have no address byte. With addresses, clients use the first one by
+    # default, so a change in their order matters.
     moved = [j for _, j in matched.places] != list(range(len(matched.places)))
     if matched.removed or moved or (new and not old):
         shown = [words.names(map(words.member, side)) or "none" for side in (old, new)]

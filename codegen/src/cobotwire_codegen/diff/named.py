@@ -14,7 +14,7 @@ T = TypeVar("T", Wire, Type)
 
 
 def named_types(old: Edition, new: Edition) -> tuple[Known, list[Finding]]:
-    """Return the differences that fields need not report again, and the findings of named types."""
+    """Return the differences that fields must not report again, and the findings of named types."""
     known = Known()
     wires = match(old.wires, new.wires, _name).further(_wire)
     types = match(old.types, new.types, _name).further(shape)
@@ -24,7 +24,7 @@ def named_types(old: Edition, new: Edition) -> tuple[Known, list[Finding]]:
     for wire, other_wire in wires.pairs:
         found.extend(wire_changes(f"wire/{other_wire.name}", wire, other_wire))
     known.reported.update(found)
-    # A value type comes after its quantities, and does not repeat their findings.
+    # Value types are listed after the quantities, so that they do not repeat their findings.
     for type, other in types.pairs:
         if type != other:
             found.extend(type_changes(f"types/{other.name}", type, other, known))

@@ -19,7 +19,8 @@ def changes(where: str, old: Quantity, new: Quantity) -> Iterator[Finding]:
     yield from _range(where, old, new)
     yield from _choices(where, old, new)
     if old.not_finite != new.not_finite:
-        spoken = ["also NaN and infinity" if side.not_finite else "finite" for side in (old, new)]
+        allowed = ("finite numbers", "finite numbers, NaN and infinity")
+        spoken = [allowed[side.not_finite] for side in (old, new)]
         yield finding("not-finite-changed", where, *spoken)
     if old.radians != new.radians:
         spoken = ["radians" if side.radians else old.unit or "numbers" for side in (old, new)]

@@ -1,4 +1,4 @@
-"""Reads OLD and NEW: an edition file, a folder with spec/, or a revision of the repository."""
+"""Reads the arguments OLD and NEW: an edition file, a folder with spec/, or a git revision."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def _git(*words: str, failed: str) -> bytes:
 
 @contextmanager
 def _places_in(revision: str) -> Iterator[None]:
-    """Put the revision before the file name of every problem, as git does."""
+    """Prefix the file name of every problem with the revision, as git does."""
     try:
         yield
     except SpecError as error:

@@ -49,7 +49,7 @@ class Known:
         where: str,
         compare: Callable[[str], Iterable[Finding]],
     ) -> Iterator[Finding]:
-        """Return the findings of a field that its type's own entry does not report."""
+        """Return the findings of a field that the entry of its type does not report."""
         same = (old.name, new.name) in self.pairs
         if not same:
             yield finding("type-replaced", where, old.name, new.name)
@@ -131,7 +131,7 @@ def _shape(where: str, old: Type, new: Type, known: Known) -> Iterator[Finding]:
 
 
 def _facts(found: Bits | Octets | Chars | Listed) -> str:
-    """Return all that matters on the wire in words."""
+    """Describe everything about a type that matters on the wire."""
     sizes = "..".join(map(str, dict.fromkeys(found.sizes)))
     if isinstance(found, Bits):
         parts = [

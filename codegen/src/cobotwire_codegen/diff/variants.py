@@ -27,8 +27,8 @@ def message_changes(
         return
     names = renames(before, after)
     matched = _match(before, after, names)
-    # Match the remaining variants by length, then from the shortest: a longer variant may only add
-    # optional fields.
+    # Match the remaining variants by length. Pair the rest from the shortest on, since a longer
+    # variant often only adds optional fields.
     rest = Matched(sorted(matched.removed, key=len), sorted(matched.added, key=len))
     rest = rest.further(len).further(lambda variant: None)
     for removed_one, added_one in rest.pairs:
@@ -71,7 +71,8 @@ def renames(before: tuple[Variant, ...], after: tuple[Variant, ...]) -> dict[str
         return all(one.name == other.name or renamed(one, other) for one, other in pairs)
 
     straight = list(zip(before, after))
-    # Added or removed optional fields shift variants; there, everything else must be equal.
+    # Added or removed optional fields shift the positions of variants. Compare every pair of
+    # variants, and accept a pair only if all its other fields are equal.
     crossed = [(old, new) for old in before for new in after if same(old, new)]
     found: dict[str, str] = {}
     for old, new in (*straight, *crossed):
@@ -153,8 +154,8 @@ def _removed_variant(
 ) -> Iterator[Finding]:
     """Report a removed variant that nothing replaces.
 
-    If it was the only request with an argument, callers can no longer give that argument. Of
-    replies, only this variant is no longer accepted.
+    If it was the only request with an argument, callers can no longer give that argument. A removed
+    reply only means that this variant is no longer accepted.
     """
     known = {field.name for other in after for field in other}
     lost = [field for field in variant if names.get(field.name, field.name) not in known]

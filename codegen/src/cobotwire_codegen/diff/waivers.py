@@ -1,4 +1,4 @@
-"""Reads waivers (accepted findings, each with rule, place and reason) and applies them."""
+"""Reads and applies waivers: accepted findings, each with its rule, place and reason."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def _near(rule: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Findings that count, findings with their waivers, and waivers without a finding."""
+    """The findings that are not waived, the waived ones with their waivers, and unused waivers."""
 
     findings: tuple[Finding, ...]
     waived: tuple[tuple[Finding, Waiver], ...]
@@ -77,7 +77,7 @@ class Outcome:
 
 
 def apply_waivers(findings: Sequence[Finding], waivers: Sequence[Waiver]) -> Outcome:
-    """Separate findings that are waived from those that count."""
+    """Separate the findings that are waived from the others."""
     known = {(waiver.rule, waiver.where): waiver for waiver in reversed(waivers)}
     keys = {(finding.rule, finding.where) for finding in findings}
     return Outcome(

@@ -44,12 +44,12 @@ __all__ = [
 
 
 def short(text: str) -> str:
-    """Return a text, cut to its first characters if it is long; the spec has the full text."""
+    """Return a text, cut if it is longer than ``LONGEST``; the spec has the full text."""
     return text if len(text) <= LONGEST else text[: LONGEST - 3].rstrip() + "..."
 
 
 def firmware(stated: Firmware | None) -> str:
-    """Return the versions of the firmware that a command needs, and who says so."""
+    """Return the firmware versions that a command needs, and the sources that state them."""
     versions = stated.versions.items() if stated else ()
     sources = stated.evidence if stated else ()
     parts = [f"{name} {decimal(version)}" for name, version in versions]
@@ -62,24 +62,33 @@ def frame_check(frame: Frame) -> str:
     if check is None:
         return "footer"
     crc = f" {tuple(check.crc)}" if check.crc else ""
-    return f"{check.word}{crc} from {check.covers_from} ({check.width}, {check.order})"
+    covered = f"{check.word}{crc} from {check.covers_from}"
+    return f"{covered} ({count_of_bytes(check.width)}, {check.order})"
+
+
+def count_of_bytes(count: int) -> str:
+    """Return a number of bytes in words."""
+    return f"{count} byte{'' if count == 1 else 's'}"
 
 
 def layout(frame: Frame) -> str:
     """Return the fixed parts of a frame format, and what LEN counts."""
     numbers = {"length": frame.length_number, "command": frame.command_number}
     parts = [
-        f"{part} ({numbers[part].width}, {numbers[part].order})" if part in numbers else part
+        f"{part} ({count_of_bytes(numbers[part].width)}, {numbers[part].order})"
+        if part in numbers
+        else part
         for part in frame.layout
     ]
-    replies = "" if frame.replies_have_command else ", replies without command"
-    # Another end is reported as a change of the check or of the footer.
-    counted = {{"check": "end", "footer": "end"}.get(part, part) for part in frame.counted}
-    return f"{' '.join(parts)}, LEN of {' '.join(sorted(counted))}{replies}"
+    replies = "" if frame.replies_have_command else "; replies have no command"
+    # Whether the frame ends with a check or a footer is reported by their own rules.
+    end = "check or footer"
+    counted = {{"check": end, "footer": end}.get(part, part) for part in frame.counted}
+    return f"{', '.join(parts)}; LEN counts {', '.join(sorted(counted))}{replies}"
 
 
 def address_range(frame: Frame) -> str:
-    """Return the further addresses of a frame format."""
+    """Return the address range of a frame format."""
     found = frame.address_range
     return f"{found[0]}..{found[-1]}" if found else "none"
 
@@ -140,23 +149,26 @@ def effect(found: Effect | None) -> str:
     """Return what a command does, as the spec states it, in one line."""
     if found is None:
         return "not stated"
-    pairs = [f"{name}: {value}" for name, value in (*found.values, *found.options)]
-    pairs += [f"{name}: ({effect(inner)})" for name, inner in found.cases]
+    values = names(f"{name}: {value}" for name, value in found.values)
+    subjects = [*filter(None, (found.what, values and f"{{{values}}}"))]
+    pairs = [f"{found.verb}: {' '.join(subjects)}"]
+    pairs += [f"{name}: {value}" for name, value in found.options]
+    pairs += [f"{name}: {effect(inner)}" for name, inner in found.cases]
     pairs += [f"at: {names(found.at)}"] if found.at else []
     pairs += [f"assumed: {found.assumed}"] if found.assumed else []
-    return names([" ".join(filter(None, (found.verb, found.what))), *pairs])
+    return f"{{{names(pairs)}}}"
 
 
 def state(found: State) -> str:
-    """Return what is declared of a state, in one line."""
+    """Return the declaration of a state, in one line."""
     parts = [found.type.name if found.type else "a text"]
     parts += [f"for each {names(found.each)}"] if found.each else []
-    parts += [f"at the start {found.start}"] if found.start is not None else []
+    parts += [f"start {found.start}"] if found.start is not None else []
     return names(parts)
 
 
 def samples(command: Command) -> str:
-    """Return what a conformance run may send."""
+    """Return the numbers that a conformance run may send."""
     entries = (
         names(f"{name} {list(numbers)}" for name, numbers in entry) for entry in command.samples
     )
@@ -164,8 +176,8 @@ def samples(command: Command) -> str:
 
 
 def template(text: Text | None) -> str:
-    """Return a text with its placeholders, as the spec writes it."""
+    """Return a text with its placeholders, in backquotes; empty if there is none."""
     if text is None:
         return ""
     gaps = (f"{prefix}{{{name}}}" for prefix, (name, _) in zip(text.prefixes, text.fields))
-    return "".join(gaps) + text.suffix
+    return f"`{''.join(gaps)}{text.suffix}`"

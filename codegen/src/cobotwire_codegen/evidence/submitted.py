@@ -1,4 +1,4 @@
-"""Reads the file of an owner: a survey, or a conformance report. It is hostile until checked.
+"""Reads an owner's file, a survey or a conformance report. It is untrusted until checked.
 
 Every size is limited before memory is used, nothing is unpacked to a disk, and texts must be
 printable. `entry` checks that the frames are frames of the edition.
@@ -55,7 +55,7 @@ _FACT = re.compile(
 _DEVICE = re.compile(
     r"/dev/(tty(USB|ACM|AMA|THS)\d+|cu\.[\w#-]+|serial/by-(id|path)/[^/]+)|COM\d+", re.ASCII | re.I
 )
-# The robot of a report, or of an owner who does not name it.
+# The name of the robot in reports, and in surveys that do not name it.
 _UNNAMED = "an arm"
 _SEAL = ("digest", "signature")
 _CHANGED = "the file was changed after it was written: its digest does not match"
@@ -79,7 +79,7 @@ class Reported:
 
 @dataclass(slots=True)
 class Submitted:
-    """What a file states. ``line`` is what its recording holds; None if it has none."""
+    """What a file states. ``line`` has the bytes of its recording; None if it has no recording."""
 
     kind: str
     edition: str
@@ -146,7 +146,10 @@ def _require(holds: bool, message: str) -> None:
 
 
 def _members(data: bytes) -> dict[str, bytes]:
-    """Return the two members of a survey; a size in the file is a claim, so reading is limited."""
+    """Return the two members of a survey.
+
+    The sizes that a zip file states may be false, so reading is limited.
+    """
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             names = [info.filename for info in archive.infolist()]
@@ -283,7 +286,7 @@ def _report(data: dict[str, Any], digest: str) -> Submitted:
     facts: dict[str, Reported] = {}
     for each in _of(data.get("results"), list, "results"):
         for reported in _of_case(_of(each, dict, "a result")):
-            # A failure counts more than what other test cases say about the same fact.
+            # A failed test case overrides passed ones about the same fact.
             before = facts.get(reported.fact)
             if before is None or before.confirmed:
                 facts[reported.fact] = reported

@@ -106,7 +106,7 @@ evidence: [{source: a library 2.0, says: "it has no such method"}]
 
 
 class RenameCommand(_Change):
-    """Rename a command of the base; its vectors show it by the new name."""
+    """Rename a command of the base; its vectors then use the new name."""
 
     rename = required(Names(), "The command.")
     to = required(Name(METHOD), "The new name.")
@@ -159,8 +159,8 @@ evidence: [{source: a library 2.0, says: "sends two more bytes"}]
 class WithdrawAcks(_Change):
     """Withdraw the base's acknowledgement of commands, with its vectors.
 
-    The commands then have no reply. An edition that acknowledges otherwise states `acks` of its
-    own, which replace those of its base.
+    The commands then have no reply. If the edition has another rule for acknowledgements, state
+    `acks` in it, which replaces that of the base.
     """
 
     withdraw_acks = required(Names(), "The commands, or `all`.")

@@ -37,14 +37,18 @@ from cobotwire_codegen.language.types import SECTIONS, TypesFile
 
 _JOINTS = "How many joints the arm has."
 _FRAME = "The frame format and the transport."
+_INHERITED = "A delta inherits it if it has as many joints as its base."
 
 
 class Acks(Record):
     """The acknowledgement of every command that has no other reply."""
 
-    field = optional(Part(ReplyField), "The field of the reply; a bare frame is legal as well.")
+    field = optional(
+        Part(ReplyField), "The field of the reply; a frame without data is legal as well."
+    )
     fields = optional(
-        Listed(ReplyField), "The fields of the reply, if it has several; a bare frame is not legal."
+        Listed(ReplyField),
+        "The fields of the reply, if it has several; a frame without data is then not legal.",
     )
     accepted = accepted_key()
     why = required(Text(), "The reason.")
@@ -88,8 +92,8 @@ class _Edition(Record):
     )
     motion = optional(
         Part(Motion),
-        "How the arm moves. A delta with as many joints inherits that of its base. Left out: a "
-        "simulated arm turns one degree a second for each percent of speed.",
+        f"How the arm moves. {_INHERITED} Left out: a simulated arm turns one degree a second for "
+        "each percent of speed.",
     )
     acks = optional(
         Part(Acks),
@@ -98,7 +102,7 @@ class _Edition(Record):
     )
     geometry = optional(
         Part(Geometry),
-        "The arm's geometry. A delta with as many joints inherits that of its base.",
+        f"The arm's geometry. {_INHERITED}",
     )
     geometry_unknown = optional(
         Text(),
@@ -108,30 +112,29 @@ class _Edition(Record):
     )
     encoders = optional(
         Part(Encoders),
-        "How the encoders of the joints count. A delta with as many joints inherits those of its "
-        "base. Left out: the joints of a simulated arm rest anywhere.",
+        f"How the encoders of the joints count. {_INHERITED} Left out: a simulated arm does not "
+        "round joint angles to encoder ticks.",
     )
     gripper = optional(Part(Gripper), "The gripper. A delta inherits that of its base.")
     servos = optional(Part(Servos), "What the servos report. A delta inherits it from its base.")
     error_codes = optional(
         Part(ErrorCodes),
-        "The numbers of rejected motions. A delta with as many joints inherits those of its base. "
-        "Left out: a simulated arm reports no error.",
+        f"The error codes that the arm reports when it rejects a motion. {_INHERITED} Left out: a "
+        "simulated arm reports no error.",
     )
     joint_limits = optional(
         Ranges(),
-        "For each joint, the lowest and the highest angle that the arm obeys. A delta with as many "
-        "joints inherits them. They have no effect if messages give targets of joints a range.",
+        f"For each joint, the lowest and the highest angle that the arm obeys. {_INHERITED} They "
+        "have no effect if the types of joint targets already have a range.",
     )
     start_angles = optional(
         Reals(),
-        "The joint angles at which a simulated arm starts. A delta with as many joints inherits "
-        "them. Left out: 0 degrees.",
+        f"The joint angles at which a simulated arm starts. {_INHERITED} Left out: 0 degrees.",
     )
     state = optional(
         Named(State, LOWER),
-        "What the arm keeps, by name. A delta inherits the state of its base, and replaces single "
-        "keys of it.",
+        "The values that the arm keeps, by name. A delta inherits the state of its base, and can "
+        "replace single keys of it.",
     )
 
 

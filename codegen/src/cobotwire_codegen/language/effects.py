@@ -13,7 +13,7 @@ _PLAIN = {"type": ["number", "string", "boolean", "array"]}
 _STATES = either(
     "object", {"additionalProperties": {"type": "string"}, "minProperties": 1}, {"type": "string"}
 )
-_AT = "The arguments that choose one of a state's values, if it has one for each index."
+_AT = "The arguments that choose one of a state's values, if the state has a value for each index."
 
 
 class State(Record):
@@ -27,8 +27,8 @@ class State(Record):
     )
     start = optional(
         Anything("a value of the type, as a vector states it", _PLAIN),
-        "What a simulated arm has at the start, for every index. Left out: zero, false, the first "
-        "member, or no text.",
+        "The value with which a simulated arm starts, for every index. Left out: zero, false, the "
+        "first member, or an empty text.",
     )
     EXAMPLE = "{type: speed, each: joint, start: 50}"
 
@@ -51,7 +51,7 @@ class Reports(_AtIndex):
     reports = required(
         Anything("a state, or a mapping from fields of the reply to states", _STATES),
         "The state that the reply has, or a mapping from its fields to states. Without `at`, a "
-        "state with a value for each joint is reported as a row.",
+        "state with a value for each joint is reported as a value type.",
     )
     EXAMPLE = "{reports: fresh_mode}"
 
@@ -62,7 +62,7 @@ class Stores(_AtIndex):
     stores = required(
         Anything("a state, or a mapping from arguments to states", _STATES),
         "The state that has the argument's value afterwards, or a mapping from arguments to "
-        "states. A row without `at` gives each joint its value.",
+        "states. Without `at`, a value type gives each joint its value.",
     )
     EXAMPLE = "{stores: joint_minimum, at: joint}"
 
@@ -86,7 +86,7 @@ class Moves(_AtIndex):
         "The argument with the target, in degrees, radians, ticks, millimetres or percent; or a "
         "fixed target.",
     )
-    by = optional(Name(LOWER), "The argument with the distance from where the part is.")
+    by = optional(Name(LOWER), "The argument with the distance from the present position.")
     until = optional(Word(("limit",)), "The motion continues until it is stopped, or to a limit.")
     about = optional(Name(LOWER), "The argument that names the axis.")
     keeps = optional(Word(("position",)), "What does not move: the end of the arm turns in place.")
@@ -115,11 +115,13 @@ class Lists(_Effect):
 
     list = required(Name(LOWER), "The state that is the list.")
     append = optional(Name(LOWER), "The argument that is added at the end.")
-    take = optional(Word(("first",)), "The reply has the first value, which leaves the list.")
-    empty = optional(Word(("zeros",)), "What `take` reports of an empty list.")
+    take = optional(
+        Word(("first",)), "The reply has the first value, which is removed from the list."
+    )
+    empty = optional(Word(("zeros",)), "What `take` reports if the list is empty.")
     clear = optional(Word(("all",)), "The list becomes empty.")
     report = optional(
-        Word(("count", "empty")), "The reply has the number of values, or whether none is left."
+        Word(("count", "empty")), "The reply has the number of values, or whether there are none."
     )
     EXCLUSIVE = (("append", "take"), ("append", "clear"), ("append", "report"), ("take", "report"))
     EXAMPLE = "{list: points, take: first, empty: zeros}"
@@ -130,7 +132,7 @@ class Computes(_Effect):
 
     computes = required(Word(("coords", "angles")), "What the reply has.")
     from_ = required(Name(LOWER), "The argument that it is computed from.")
-    near = optional(Name(LOWER), "The argument with the angles that the solution is near to.")
+    near = optional(Name(LOWER), "The argument with angles; the solution is near to them.")
     EXAMPLE = "{computes: coords, from: angles}"
 
 

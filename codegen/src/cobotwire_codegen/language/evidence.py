@@ -36,9 +36,9 @@ frames: ["FE FE 0E 20 00 64 00 00 00 00 00 00 00 00 00 00 FA"]
 class EvidenceFile(Record):
     """What one arm showed. `cobotwire-gen evidence add` writes it.
 
-    A contradicted fact becomes a dispute of its command. Its confidence is medium if as many arms
-    confirm it as contradict it, else high or low. A delta does not inherit the evidence of its
-    base, which describes another robot.
+    A contradicted fact becomes a dispute of its command. The confidence is high if more arms
+    confirm the fact than contradict it, low if fewer do, else medium. A delta does not inherit the
+    evidence of its base, which describes another robot.
     """
 
     evidence = required(Name(LOWER), "The edition.")

@@ -18,7 +18,7 @@ class Evidence(Record):
 
     source = required(Text(), "The source: `document`, a library with its version, a capture.")
     says = required(Text(), "What the source states.")
-    lines = optional(Lines(), "Where the source states it, if it is the document.")
+    lines = optional(Lines(), "The lines that state it, if the source is the document.")
     EXAMPLE = '{source: document, lines: [416, 417], says: "x1000 for a length"}'
 
 
@@ -29,12 +29,12 @@ class Dispute(Record):
     """A fact on which the sources disagree. It is shown in the generated reference."""
 
     claim = required(Text(), "The fact, as this edition reads it.")
-    reading = required(Text(), "The same as a formula or in a few words.")
+    reading = required(Text(), "The claim as a formula or in a few words.")
     confidence = required(Word(CONFIDENCE), "How certain the reading is.")
     about = optional(
         Text(),
-        "The part and the aspect that it is about, as evidence files name a fact of the command: "
-        "`reply/length`. What arms show then raises or lowers the confidence.",
+        "The part and the aspect that the dispute is about, written as in evidence files: "
+        "`reply/length`. Observations of arms then raise or lower the confidence.",
     )
     evidence = required(Listed(Evidence, NO_EVIDENCE), "What each source states.", NO_EVIDENCE[0])
     EXAMPLE = """\

@@ -26,8 +26,8 @@ class Address(Record):
     )
     joints = optional(
         Whole(1, None, "bad-frame"),
-        "How many joints the device has. Left out: as many as the edition. Commands with a row for "
-        "all joints cannot be sent to a device with fewer.",
+        "How many joints the device has. Left out: as many as the edition. Commands with a value "
+        "for each joint cannot be sent to a device with fewer joints.",
         0,
     )
     EXAMPLE = "{value: 0, doc: Every arm., replies: any}"
@@ -61,7 +61,7 @@ class Frame(Record):
     )
     check_bytes = optional(
         Whole(1, 16, "bad-frame"),
-        "The size of a sum: 1, 2 or 4. Left out: 1. Others have one size.",
+        "The size of a sum: 1, 2 or 4. Left out: 1. Each other check has a fixed size.",
         0,
     )
     check_order = optional(

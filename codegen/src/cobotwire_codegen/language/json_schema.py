@@ -1,4 +1,4 @@
-"""Builds the forms of JSON Schema that describe the spec."""
+"""Builds the parts of the JSON Schema that describes the spec."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ class Limit(NamedTuple):
 
     @property
     def message(self) -> str:
-        """The sentence with which ``cobotwire-gen check`` refuses it."""
+        """The message of ``cobotwire-gen check`` for a spec that uses the feature."""
         thing = self.heading[0].lower() + self.heading[1:]
         anchor = self.heading.lower().replace(" ", "-")
         return f"a spec cannot state {thing} ({self.examples}): {self.advice}; see {PAGE}#{anchor}"
@@ -64,15 +64,14 @@ NO_HEADER = Limit(
 NO_LENGTH = Limit(
     "A protocol without a length",
     "Modbus RTU, RoboClaw, the data frames of a TFmini",
-    "A frame is cut by its LEN: not by a delimiter, nor by the size that belongs to its first "
-    "bytes.",
+    "LEN determines where a frame ends, not a delimiter, nor a size that its first bytes imply.",
     "state only the messages that have LEN, such as the commands of a TFmini (header 5A)",
     ("length_counts", "delimiter", "terminator", "frame_size", "fixed_length"),
 )
 NO_COMMAND = Limit(
     "A protocol without a command id",
     "the data frames of a TFmini",
-    "A message is found by the id that its request carries. Only replies can lack it "
+    "Each request carries an id that identifies the command. Only replies can lack it "
     "(`replies_have_command: false`).",
     "state only the messages that have one",
 )
@@ -117,12 +116,12 @@ LIMITS = (
     OTHER_CHECK,
     CHARACTER,
 )
-# The keys of these are those that authors of a command try.
+# Limits of commands. Their keys are those that authors try in a command.
 OTHER_ACK = Limit(
     "An acknowledgement with another id",
     "UBX-ACK-ACK and UBX-ACK-NAK",
-    "An acknowledgement carries the id of its request: this alone says to which request it belongs "
-    "when several are under way. State a message that acknowledges all requests as a command with "
+    "An acknowledgement carries the id of its request, since only the id shows to which of several "
+    "requests it belongs. State a message that acknowledges all requests as a command with "
     "`event: true`; its fields name the request. `ack_within` does not wait for it; a program "
     "waits with `events()` and compares the fields.",
     "state it as an event",
@@ -131,11 +130,11 @@ OTHER_ACK = Limit(
 TWO_ACKS = Limit(
     "Two acknowledgements of one request",
     "a receipt at once, and a result at the end of a motion",
-    "A request has one acknowledgement, and `ack_within` returns at the first frame that is legal "
-    "as it. If the second one has an id of its own, state it as a command with `event: true`, at "
-    "the end of a motion with `role: motion ended`: then waited motions end with it. If it has the "
-    "same id, one variant of both is the acknowledgement, and the second is reported as a frame "
-    "that nobody waits for.",
+    "A request has one acknowledgement, and `ack_within` returns at the first frame that is a "
+    "legal one. If the second one has an id of its own, state it as a command with `event: true`. "
+    "If it reports the end of a motion, add `role: motion ended`; then waited motions end with it. "
+    "If both have the same id, state a variant of one of them as the acknowledgement; the second "
+    "frame is reported as one that nobody waits for.",
     "state the first as the `reply` of the command, which has `ack: true`, the second as an event",
     ("acks", "ack_stages", "second_ack", "final_ack", "completion", "completed_by"),
 )

@@ -176,7 +176,7 @@ def accepted_key() -> Key[Node | None]:
             {"type": "array", "items": {"type": ["string", "integer"]}, "minItems": 1},
         ),
         "The values of the last field of the reply that report success; with any other one the "
-        "device has refused the request, or a motion has failed. Left out: all but 0.",
+        "device has refused the request, or a motion has failed. Left out: every value except 0.",
     )
 
 
@@ -224,7 +224,7 @@ class Command(Record):
     )
     accepted = accepted_key()
     alias = optional(
-        Name(METHOD), "The command that has the same message; this name is its second one."
+        Name(METHOD), "The command that has the same message, of which this is a second name."
     )
     role = optional(
         Word(ROLES, ROLES.values()), "How hand-written code finds the command in every edition.", ""

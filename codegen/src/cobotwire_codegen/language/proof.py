@@ -31,8 +31,8 @@ class _Vector(Record):
     printed = optional(Hex(), "The bytes that the document prints.")
     frame = optional(
         Hex(),
-        "The frame to encode and to decode; it may carry any legal address. Left out: the printed "
-        "bytes are a stray copy.",
+        "The frame to encode and to decode; it may carry any legal address. Left out: the document "
+        "prints bytes that belong elsewhere.",
     )
     text = optional(Text(), "The text of a reply outside any frame, instead of `frame`.")
     values = optional(

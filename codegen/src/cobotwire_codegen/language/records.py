@@ -274,7 +274,7 @@ class InFile(Shape[Node | None]):
 
 
 class InFiles(Shape[Node | None]):
-    """A list of file names and contents. With ``alone``, a value of that shape is allowed too."""
+    """A list of file names and contents, or instead a value of the shape ``alone``."""
 
     blank = None
 

@@ -52,7 +52,7 @@ Editors that use the YAML language server complete and check a file if its first
 `# yaml-language-server: $schema=PATH/schema.json`; `cobotwire-gen schema` writes the schema.
 """
 _LIMITS = """\
-Where `cobotwire-gen check` recognises one of these, it refuses it with a link to this chapter."""
+If `cobotwire-gen check` recognises one of these, its message links to this chapter."""
 STATE = "State and effects"
 _CHAPTERS: tuple[tuple[str, tuple[Described, ...]], ...] = (
     ("Editions", (WholeEdition, DeltaEdition, Acks, *ROBOT_RECORDS)),
@@ -80,10 +80,10 @@ def language_page() -> str:
                 seen.add(record)
                 lines += _record(record)
         if title == STATE:
-            lines += ["", "Every arm has this state, so that no edition declares it:", ""]
+            lines += ["", "Every arm has this state, which no edition declares:", ""]
             lines += [f"- `{name}`: {doc}" for name, doc in BUILT_IN.items()]
             settable = ", ".join(f"`{name}`" for name in SETTABLE)
-            lines += ["", f"A command can store or set these of it: {settable}."]
+            lines += ["", f"Commands can store or set only these of them: {settable}."]
     lines += ["", "## What the language cannot say", "", _LIMITS]
     for limit in (*LIMITS, *COMMAND_LIMITS):
         lines += ["", f"### {limit.heading}", "", f"Examples: {limit.examples}.", "", limit.doc]
@@ -92,7 +92,7 @@ def language_page() -> str:
 
 
 def leaves(described: Described) -> Iterator[type[Record]]:
-    """Return the records that something can be read as, in order."""
+    """Return the records that a record or choice stands for, in order."""
     if isinstance(described, Choice):
         for option in described.options():
             yield from leaves(option)

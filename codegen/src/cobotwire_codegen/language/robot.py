@@ -10,7 +10,7 @@ NUMBER = r"[0-9]{1,3}"
 
 
 class Link(Record):
-    """A row of standard Denavit-Hartenberg parameters."""
+    """The standard Denavit-Hartenberg parameters of one link."""
 
     offset = required(Real(), "What is added to the joint's angle, in degrees.")
     alpha = required(Real(), "The angle between the axes of this joint and the next, in degrees.")
@@ -18,9 +18,9 @@ class Link(Record):
     d = required(Real(), "The shift along the axis of this joint, in millimetres.")
     turned_by = optional(
         Named(Real(), NUMBER),
-        "The joints that turn the link, counted from 1, and the degrees that it turns for each "
-        "degree of them: `{2: -1, 3: -1}` for an end that stays level, `{}` for a fixed link. By "
-        "default the first joint that turns no earlier link turns it.",
+        "For each joint (counted from 1) that rotates this link, the degrees that the link rotates "
+        "per degree of the joint: `{2: -1, 3: -1}` for an end that stays level, `{}` for a fixed "
+        "link. Left out: 1 for the next joint, one after the highest joint named so far.",
     )
     EXAMPLE = "{offset: -90, alpha: 0, a: -110.4, d: 0}"
 
@@ -39,7 +39,7 @@ doc: Measured on an arm with two joints.
 
 
 class Motion(Record):
-    """How the arm moves; a simulated arm moves like that."""
+    """How the arm moves, and so how it is simulated."""
 
     speed = required(Real(), "Degrees a second for each percent of speed.")
     fastest = required(Real(), "The highest speed of a joint, in degrees a second.")
@@ -95,13 +95,13 @@ class Servos(Record):
 
 
 class ErrorCodes(Record):
-    """The numbers that a simulated arm reports when it rejects a motion."""
+    """The error codes that a simulated arm reports when it rejects a motion."""
 
-    joint_limits = required(Numbers(), "For each joint, the number for a target beyond its limit.")
+    joint_limits = required(Numbers(), "For each joint, the code for a target beyond its limit.")
     no_solution = required(Whole(1), "No joint angles bring the end of the arm to the target.")
     no_straight_line = required(Whole(1), "The joints cannot follow a straight line.")
-    stopped = optional(Whole(0), "A motion was stopped before its target. 0: it has no number.")
-    no_power = optional(Whole(0), "The arm has no power, or not every joint is held. 0: no number.")
+    stopped = optional(Whole(0), "A motion was stopped before its target. 0: it has no code.")
+    no_power = optional(Whole(0), "The arm has no power, or not every joint is held. 0: no code.")
     doc = required(Text(), "Where the numbers are taken from.")
     EXAMPLE = "{joint_limits: [1, 2], no_solution: 32, no_straight_line: 33, doc: Its manual.}"
 

@@ -19,13 +19,13 @@ CHECKS = {
     "fletcher-16": "Two running sums modulo 255; the second is the high byte.",
 }
 REPLIES = {
-    "own": "From this address: one device has it.",
-    "any": "From any address: several devices have it, and each may reply.",
-    "one": "From any address, but one only: several devices have it, and one replies for all.",
+    "own": "From this address, which only one device has.",
+    "any": "From any address: the request reaches several devices, and each may reply.",
+    "one": "From any address, once: the request reaches several devices, and one replies for all.",
     "none": "From no address: it is a broadcast, and no device replies.",
 }
 ROLES = {
-    "joint targets": "Moves all joints to a row of targets, at a speed.",
+    "joint targets": "Moves each joint to a target of its own, at a speed.",
     "joint target": "Moves one joint: one argument selects it, another is its target.",
     "coordinate targets": "Moves the end of the arm to coordinates, at a speed.",
     "coordinate target": "Moves along one axis: one argument selects it, another is its target.",
@@ -63,7 +63,7 @@ CONTROLS = {
 }
 # The state that every arm has: the simulator computes it, so no edition declares it.
 BUILT_IN = {
-    "angles": "The angles of all joints, or with `at` of one, in the field's unit.",
+    "angles": "The angle of each joint, or with `at` of one joint, in the field's unit.",
     "coords": "The coordinates of the end of the arm or its tool, in the frame that is set.",
     "base_coords": "The coordinates of the end of the arm in the frame of the base.",
     "planned_angles": "The angles at which the present motion ends.",
@@ -74,13 +74,13 @@ BUILT_IN = {
     "gripper_moving": "Whether the gripper moves.",
     "reached": "Whether the arm is at the target of the request.",
     "powered": "Whether the motors have power.",
-    "held": "Whether a joint has torque, for each joint.",
+    "held": "For each joint, whether it has torque.",
     "free": "Whether free mode is on: no joint has torque.",
     "paused": "Whether the motion is paused.",
     "connected": "Whether the controller at the end of the arm is connected.",
-    "error": "The number of the last error; 0 is no error.",
-    "lowest": "The smallest allowed angle, for each joint.",
-    "highest": "The largest allowed angle, for each joint.",
+    "error": "The code of the last error; 0 is no error.",
+    "lowest": "For each joint, the smallest allowed angle.",
+    "highest": "For each joint, the largest allowed angle.",
     "starts": "How often the controller has started.",
 }
 # The built-in states that a command can store or set.

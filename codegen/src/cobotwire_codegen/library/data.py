@@ -17,7 +17,7 @@ Row = tuple[object, ...]
 
 
 class Stated(NamedTuple):
-    """What is stated about a class, in the file of that name: each text is a Python literal.
+    """The contents of a class's file, as texts that are Python literals.
 
     ``methods`` has each method that no earlier class has, with all classes that have it.
     """
@@ -30,7 +30,7 @@ class Stated(NamedTuple):
 
 def stated(library: Library) -> list[Stated]:
     """Return what is stated about each class; a method is stated once, with its first class."""
-    # By the text, because the defaults False and 0 are equal.
+    # Compare methods by their text, because the defaults False and 0 are equal.
     owners: dict[str, list[str]] = {}
     for given in library.classes:
         for method in given.methods:
@@ -60,7 +60,7 @@ def place_of(helper: str) -> tuple[str, str]:
 
 
 def _not_empty(row: dict[str, object]) -> dict[str, object]:
-    """Return what is not empty."""
+    """Return the entries with values that are not empty."""
     return {key: value for key, value in row.items() if value}
 
 
@@ -117,7 +117,7 @@ def _method(given: LibraryClass, method: Method) -> Row:
 
 
 def _by(method: Method) -> str:
-    """Return which method of the layer makes the call."""
+    """Return the name of the layer's method that makes the call."""
     if method.result == ENDED:
         return "move"
     if method.command.ack:
@@ -130,8 +130,8 @@ def _by(method: Method) -> str:
 def _gives_form(method: Method) -> str:
     """Return how a program converts a result of ours to the library's.
 
-    ``same``: it need not; ``nothing``: only the library has a result; ``list``, ``int`` or ``ints``
-    (a list of numbers): to that type; ``parts``: by hand.
+    ``same``: no conversion is needed; ``nothing``: our method has no result, but the library's has;
+    ``list``, ``int`` or ``ints`` (a list of numbers): convert to that type; ``parts``: by hand.
     """
     if method.result == ENDED or method.command.ack or not method.command.awaits_reply:
         has_result = method.result != "nothing" and (method.command.ack or method.result != "plain")

@@ -6,7 +6,7 @@ from cobotwire_codegen.language.names import CLASS, METHOD
 from cobotwire_codegen.language.records import Listed, Named, Record, optional, required
 from cobotwire_codegen.language.shapes import Names, Text, Texts, Word
 
-# How a result is given. The package has a function of each name.
+# How a result is converted. The package has a function of each name.
 RESULTS = {
     "plain": "Lists instead of tuples; numbers instead of flags and enums.",
     "listed": "A list, also of one number.",
@@ -23,7 +23,7 @@ RESULTS = {
     "quick_move_info": "The rows, two zeros, and the last six bytes.",
     "in_hundredths": "Whole numbers of hundredths.",
     "signed": "Words of two bytes as signed numbers.",
-    "solved": "A row of angles; a text if there is no solution.",
+    "solved": "A list of angles; a text if there is no solution.",
     "hex_text": "Four hex digits.",
     "calibrated_joints": "1 if everything is calibrated, else all numbers in one list.",
     "robot_status_of_450": "As `robot_status`, lowest bits first.",
@@ -35,7 +35,7 @@ RESULTS = {
     "radians": "Radians, rounded to thousandths.",
     "bit_numbers": "For each number the list of the bits that are set, lowest first, or 0.",
     "error_classes": "For each of seven bytes the bits of its class; six bytes as three words.",
-    "points": "Two lists, of the numbers at even and at odd places; -1 if all are 0.",
+    "points": "Two lists, of the numbers at even and at odd positions; -1 if all are 0.",
     "words_of_text": "The first word of the first text, and the last word of the last.",
 }
 
@@ -54,8 +54,8 @@ class Method(Record):
     calls = optional(Text(), "Our method; left out: that of the same name.")
     passes = optional(
         Texts(),
-        "The parameters that our method is given, in its order, or numbers in quotes instead; "
-        "left out: all but `_async` and those of `addresses` and `lacks`.",
+        "The parameters that are passed to our method, in its order; a number in quotes is passed "
+        "as it is. Left out: all but `_async` and those of `addresses` and `lacks`.",
     )
     lacks = optional(
         Names(), "Parameters that the edition cannot send; an error says so, unless they are None."
@@ -63,7 +63,7 @@ class Method(Record):
     ranges = optional(
         Texts(), "Ranges that the library has and the edition lacks: `name=lowest..highest`."
     )
-    result = optional(Word(RESULTS, RESULTS.values()), "How the result is given.", "plain")
+    result = optional(Word(RESULTS, RESULTS.values()), "How the result is converted.", "plain")
 
 
 class Absent(Record):
@@ -109,8 +109,6 @@ class Library(Record):
     """The maker's library."""
 
     library = required(Text(), "Its name and version.")
-    methods = required(Named(Method, METHOD), "Methods, where a class says nothing else.")
-    absent = required(
-        Listed(Absent), "Public names that no class of ours has, of any of its classes."
-    )
+    methods = required(Named(Method, METHOD), "Methods of every class that does not state its own.")
+    absent = required(Listed(Absent), "Public names of its classes that have no counterpart.")
     classes = required(Named(Class, CLASS), "Its classes, in the order of the documentation.")

@@ -19,9 +19,9 @@ class Parameter:
 class Method:
     """A method of the library.
 
-    ``command`` is the name of our method that it calls; ``passes`` are the parameters and the
-    numbers that it passes; ``result`` is how our result is converted. ``address`` is the parameter
-    that selects the device; ``lacks`` are parameters that cannot be sent.
+    ``command`` is the command that it calls; ``passes`` are the parameters and the numbers that it
+    passes; ``result`` is how our result is converted. ``address`` is the parameter that selects the
+    device; ``lacks`` are parameters that cannot be sent.
     """
 
     name: str
@@ -51,7 +51,7 @@ class LibraryClass:
     ``edition`` is the edition on ``ports``, and ``elsewhere`` the edition on all other ports; they
     may be equal. ``like`` is the class that it inherits from; empty without one. ``one_way``
     says what its one-way requests return, and when. ``absent`` are its names that have no
-    counterpart, each with why.
+    counterpart, each with the reason.
     """
 
     name: str
@@ -73,7 +73,7 @@ class LibraryClass:
 class Library:
     """The maker's library; ``name`` has its version.
 
-    ``absent`` are its public names that have no counterpart, each with why.
+    ``absent`` are its public names that have no counterpart, each with the reason.
     """
 
     name: str

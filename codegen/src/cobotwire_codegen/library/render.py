@@ -13,7 +13,7 @@ from cobotwire_codegen.render import Files, environment
 
 
 def render_library(library: Library) -> Files:
-    """Return the data of the classes, their types, and a module for each of the library's."""
+    """Return the data and types of the classes, and a module for each module of the library."""
     jinja = environment()
     jinja.globals.update(constructor=constructor, names=names, native=native)
     made: Files = {PurePosixPath("absent.json"): absent_json(library)}
@@ -56,7 +56,7 @@ def their_call(method: Method) -> str:
 
 
 def names(library: Library) -> list[str]:
-    """Return what the package exports, in the order of ruff."""
+    """Return the names that the package exports, in the order that ruff requires."""
     constants = ["PI_BAUD", "PI_PORT"]
     classes = sorted([each.name for each in library.classes] + ["Angle", "Coord"])
     return [*constants, *classes, "utils"]

@@ -47,7 +47,7 @@ Limits = tuple[tuple[str, tuple[object, ...]], ...]
 
 @dataclass(frozen=True, slots=True)
 class Vector:
-    """A frame with the values that it carries. ``example`` counts the document's own, from 1.
+    """A frame with the values that it carries. ``example`` is its number in the document, from 1.
 
     With ``derived``, the frame was computed from a vector of the base; it is not evidence itself.
     ``accepted`` and ``refused`` hold, for some fields, values that are legal in place of the
@@ -94,7 +94,7 @@ class Edition:
     vectors: tuple[Vector, ...]
     changes: tuple[Change, ...]
     states: tuple[State, ...] = ()
-    """What the arm keeps."""
+    """The state that the arm keeps."""
     gone: tuple[tuple[str, str], ...] = ()
     """Commands of the base that this edition removes or renames, with a hint that says where."""
     bases: tuple[str, ...] = ()

@@ -13,8 +13,8 @@ class State:
     """One item of the state of an arm.
 
     ``type`` is None for a text. ``each`` names the types of its indices, and there is a value for
-    each index; if ``each`` is empty, there is a single value. ``start`` is what a simulated arm has
-    at the start, as the spec states it; None: zero, or no text.
+    each index; if ``each`` is empty, there is a single value. ``start`` is the value with which a
+    simulated arm starts, as the spec states it; None: zero, or an empty text.
     """
 
     place: Place
@@ -26,7 +26,7 @@ class State:
 
 @dataclass(frozen=True, slots=True)
 class Effect:
-    """What a command does: a verb, and what belongs to it.
+    """What a command does: a verb, which is the kind of effect, and what it applies to.
 
     Attributes:
         place: where the spec states it.

@@ -42,7 +42,7 @@ class Firmware:
 
 @dataclass(frozen=True, slots=True)
 class Dispute:
-    """A fact on which the sources disagree; ``about`` is its part and aspect, if it has a name."""
+    """A fact on which the sources disagree; ``about`` is its part and aspect, or empty."""
 
     place: Place
     claim: str

@@ -132,7 +132,8 @@ class Frame:
     def length(self, data_size: int, direction: Direction = "request") -> int:
         """Return LEN of a frame with that many data bytes."""
         absent = 0 if self.has_command(direction) else self.sizes["command"]
-        # A reply without an id has data in its place: frames of one LEN have one size.
+        # In a reply without an id, the data starts at the id's offset, so the id's bytes are not
+        # counted. Frames with equal LEN therefore have equal size in both directions.
         return self._counted_size + data_size - absent
 
     @cached_property
@@ -148,7 +149,7 @@ class Frame:
     def usual(self) -> bool:
         """Whether LEN and CMD are a byte each after the header, and LEN counts all after itself.
 
-        The maker's robots have these frames; with a footer, a CRC-16/MODBUS or a sum.
+        The maker's robots use such frames. They end with a footer, a CRC-16/MODBUS or a sum.
         """
         check = self.check
         if check is None:

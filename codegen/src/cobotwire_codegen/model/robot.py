@@ -8,9 +8,10 @@ from fractions import Fraction
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """A row of standard Denavit-Hartenberg parameters, in degrees and millimetres.
+    """The standard Denavit-Hartenberg parameters of one link, in degrees and millimetres.
 
-    ``turned_by`` holds the joints that turn it, counted from 1, each with its share.
+    ``turned_by`` holds the joints that rotate the link, counted from 1, each with the degrees that
+    the link rotates per degree of the joint.
     """
 
     offset: Fraction
@@ -30,7 +31,7 @@ class Geometry:
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """How an arm moves, in degrees and seconds: the speed is that of one percent."""
+    """How an arm moves, in degrees and seconds; ``speed`` is its speed at one percent."""
 
     speed: Fraction
     fastest: Fraction
@@ -42,7 +43,7 @@ class Motion:
 
 @dataclass(frozen=True, slots=True)
 class Encoders:
-    """How encoders count: ticks of a turn, readings, and the direction in which each one counts."""
+    """How encoders count: ticks per turn, readings, and the direction in which each one counts."""
 
     ticks: int
     zero: int
@@ -71,7 +72,7 @@ class Servos:
 
 @dataclass(frozen=True, slots=True)
 class ErrorCodes:
-    """The numbers of rejected motions."""
+    """The error codes that the arm reports when it rejects a motion."""
 
     joint_limits: tuple[int, ...]
     no_solution: int

@@ -2,9 +2,9 @@
 
 All four have the same attributes, so that the rest of the generator rarely distinguishes them:
 ``kind``, ``name``, ``doc``, ``class_name``, ``members``, ``items``, ``parts``, ``size``,
-``choices``, and the conversions ``from_raw`` and ``read``. A type also states itself: its
-``numbers`` in the table, its ``span`` in words, its record in ``edition.json`` (``stated``), and as
-``scalar`` the Python type of its value, or of each number of several.
+``choices``, and the conversions ``from_raw`` and ``read``. A type also describes itself:
+``numbers`` for the table, ``span`` in words, ``stated`` as its record in ``edition.json``, and
+``scalar`` as the Python type of its value or of each of its numbers.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from cobotwire_codegen.model.wires import Wire
 from cobotwire_codegen.units import UNITS
 
 Record = dict[str, Any]
-# Returns the name of a type or a wire type, or its record where an edition does not list it.
+# Returns the name of a type or wire type; or its record, if the edition's lists lack it.
 Refer = Callable[[Any], str | Record]
 
 
@@ -53,7 +53,7 @@ class _Scalar:
 
     @property
     def sizes(self) -> tuple[int, int]:
-        """The least and the most elements."""
+        """The smallest and the largest number of elements."""
         return 1, 1
 
     @property
@@ -92,9 +92,9 @@ class _Scalar:
 class Quantity(_Scalar):
     """A wire type with a scale, a unit and a range (in that unit; None: every raw value).
 
-    ``choices``, if there are any, are the only legal raw values. ``meanings`` say what raw values
-    from the first to the second stand for, without making others illegal. With ``radians`` the API
-    uses radians, and the wire carries degrees.
+    ``choices``, if there are any, are the only legal raw values. ``meanings`` are a first and a
+    last raw value, and what those in between stand for; raw values without a meaning are legal too.
+    With ``radians`` the API uses radians, and the wire carries degrees.
     """
 
     kind: ClassVar[str] = "quantity"
@@ -147,7 +147,7 @@ class Quantity(_Scalar):
         return f"{decimal(lowest)}..{decimal(highest)}{unit}"
 
     def stated(self, refer: Refer) -> Record:
-        """Return its record in ``edition.json``, without what is empty."""
+        """Return its record in ``edition.json``, without empty values."""
         record: Record = {"wire": refer(self.wire)}
         if self.scale != 1:
             record["scale"] = exact_number(self.scale)
@@ -355,7 +355,7 @@ class Value:
 
     @property
     def sizes(self) -> tuple[int, int]:
-        """The least and the most elements."""
+        """The smallest and the largest number of elements."""
         return 1, 1
 
     @property
@@ -369,7 +369,7 @@ class Value:
         return self.size
 
     def read(self, data: bytes) -> object:
-        """Return the value of each part that bytes encode."""
+        """Return the values that bytes encode, one for each item."""
         values = []
         for _, item in self.items:
             values.append(item.read(data[: item.size]))

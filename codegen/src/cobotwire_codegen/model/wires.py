@@ -36,7 +36,7 @@ class Wire:
 
     @property
     def form(self) -> dict[str, Any]:
-        """Its bytes as tables and ``edition.json`` state them; integers leave the encoding out."""
+        """Its record in tables and ``edition.json``; that of an integer has no ``encoding``."""
         encoding = {} if self.encoding == "integer" else {"encoding": self.encoding}
         form = {"width": self.width, "order": self.order, "signed_at": self.signed_at}
         return form | encoding

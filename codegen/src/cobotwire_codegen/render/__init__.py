@@ -111,7 +111,7 @@ def _methods(jinja: Environment, common: dict[str, Any]) -> Files:
 
 
 def _clients(jinja: Environment, common: dict[str, Any]) -> Files:
-    """Return the blocking client, and that for asyncio; one template generates both."""
+    """Return the blocking and the asyncio client; one template generates both."""
     sharing: Sharing = common["sharing"]
     template = jinja.get_template("python/client.py.j2")
     name = sharing.edition.class_name
@@ -188,12 +188,12 @@ def with_used_types(edition: Edition) -> Edition:
 def environment(templates: Path | None = None) -> Environment:
     """Return the environment of all templates; those in ``templates`` replace the shipped ones.
 
-    Jinja's sandbox stops the usual attacks by a foreign template. It guarantees nothing: the
-    objects that templates get were not written for it.
+    Jinja's sandbox stops the usual attacks by a foreign template. It gives no guarantee, since the
+    objects that templates receive were not designed for it.
     """
     if templates is None:
         return _shipped()
-    # Made again each time: the user of `watch` may add a template.
+    # Do not cache this environment: during `watch`, the user may add a template.
     return _environment(
         SandboxedEnvironment, FileSystemLoader(templates), PackageLoader("cobotwire_codegen")
     )

@@ -53,8 +53,8 @@ def arguments(command: Command) -> tuple[Argument, ...]:
 def overloads(command: Command) -> tuple[tuple[Argument, ...], ...]:
     """Return the arguments of each variant; empty if one signature covers all variants.
 
-    It does if each variant adds one argument to the next shorter variant, and an argument has the
-    same type in all of them.
+    One signature suffices if each variant adds one argument to the next shorter variant, and each
+    argument has the same type in all variants.
     """
     found = parameters(command)
     names = sorted((set(named_fields((v,))) for v in command.requests), key=len)
@@ -66,7 +66,7 @@ def overloads(command: Command) -> tuple[tuple[Argument, ...], ...]:
 
 
 def keyword_only(command: Command) -> set[str]:
-    """Return the keyword-only arguments: those that one of several overloads lacks."""
+    """Return the keyword-only arguments: those that some overload lacks, if there are several."""
     if not overloads(command):
         return set()
     return {parameter.name for parameter in parameters(command) if parameter.may_be_none}
@@ -127,7 +127,7 @@ def _of_field(parameter: Parameter) -> Argument:
 
 
 def _line(parameter: Parameter) -> str:
-    """Return the line of the docstring: what it is, its range and unit, its default."""
+    """Return a parameter's line of the docstring: its description, range, unit and default."""
     allowed = parameter.allowed
     if parameter.radians:
         allowed = f"in radians; on the wire {allowed}"

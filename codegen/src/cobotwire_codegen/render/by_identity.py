@@ -1,4 +1,4 @@
-"""Caches what was derived from an object of the model."""
+"""Caches values that are derived from an object of the model."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import Generic, TypeVar
 
 T = TypeVar("T")
 Result = TypeVar("Result")
-# The most results that are kept: more than the number of commands of all editions.
+# The size of each cache: more than the number of commands of all editions.
 _MOST = 8192
 
 
 class _Same(Generic[T]):
-    """Equals another if both hold the same object. Hashing the object itself would be slow."""
+    """A cache key: equal if both hold the same object. Hashing the object itself would be slow."""
 
     __slots__ = ("held",)
 

@@ -41,7 +41,7 @@ def only_fixed(rows: Iterable[Row]) -> bool:
 
 
 def on_one_line(rows: Iterable[Row]) -> str:
-    """Return a message as a row of bytes and names of fields."""
+    """Return a message on one line, as bytes and names of fields."""
     return " ".join(label(content, value) for _, content, value in rows)
 
 

@@ -1,4 +1,4 @@
-"""Draws a message as a row of boxes with the numbers of their bytes above."""
+"""Draws a message as a row of boxes, with the positions of their bytes above them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 # This width fits a code block of the docs, and a terminal.
 WIDTH = 96
-# These boxes show their fixed value; the box of a field shows its name.
+# The boxes of these parts show their bytes; the box of a field shows its name.
 FIXED = ("header", "LEN", "CMD", "footer")
 
 Row = tuple[str, str, str]
@@ -41,7 +41,7 @@ def label(content: str, value: str) -> str:
 
 
 def _parts(rows: Iterable[Row], example: bytes) -> Iterator[str]:
-    """Yield the bytes of each part of an example; nothing if the sizes of several parts vary."""
+    """Yield the bytes of each part of an example; empty if the sizes of several parts vary."""
     widths = [width(position) for position, _, _ in rows]
     rest = len(example) - sum(filter(None, widths))
     for each in widths:

@@ -30,7 +30,7 @@ _BUILT_IN = {
     "free": "whether free mode is on",
     "paused": "whether the motion is paused",
     "connected": "whether the controller at the end of the arm is connected",
-    "error": "the number of the last error",
+    "error": "the code of the last error",
     "lowest": "the smallest allowed angle of each joint",
     "highest": "the largest allowed angle of each joint",
     "starts": "how often the controller has started",

@@ -1,4 +1,4 @@
-"""Escapes the texts of a spec for Markdown: the only place that does it.
+"""Escapes the texts of a spec for Markdown. No other module does so.
 
 The whole model is copied with escaped texts before the templates see it, so that no template can
 forget to escape. The names in a model are identifiers, which Markdown takes as they are.
@@ -14,7 +14,7 @@ from cobotwire_codegen.errors import Place
 from cobotwire_codegen.model import Text, Vector
 
 T = TypeVar("T")
-# Expressions that a template shows as code, where an escape would be visible, or does not show.
+# Attributes that no template shows, or that templates show as code, where escapes would be visible.
 _AS_CODE: dict[type, tuple[str, ...]] = {Text: ("prefixes", "suffix"), Vector: ("text",)}
 # Signs that start a block at the start of a line: list, heading, quotation, fence, comment, label.
 _BLOCK = re.compile(r"\A([-+*=#>~:%]|\((?=[^)]*\)=)|\d+(?=[.)](\s|\Z)))")

@@ -18,7 +18,7 @@ _ABOUT_THE_SPEC = re.compile(r"(?:^| )[^.]*stated as the difference[^.]*\.")
 
 
 def robot_pages(editions: Sequence[tuple[Edition, Confirmed]]) -> Files:
-    """Return a page for each robot; docs/conf.py draws its arm in place of the comment."""
+    """Return a page for each robot; docs/conf.py replaces `<!-- picture -->` with a drawing."""
     template = environment().get_template("markdown/robot.md.j2")
     made: Files = {}
     for given, facts in editions:

@@ -49,7 +49,7 @@ class Sharing:
     @property
     def base_package(self) -> str:
         """The full name of the base's package."""
-        assert self.base is not None, "only an edition with a base shares anything"
+        assert self.base is not None, f"{self.edition.name} has no base to import from"
         return self.base._package
 
     def shared_enums(self) -> list[str]:
@@ -104,7 +104,7 @@ class Sharing:
         """Return the import of the base's family as ``Base``."""
         other = self._same_family(family)
         assert self.base is not None
-        assert other is not None, "it shares methods with the base"
+        assert other is not None, f"the base has no family {family.name} to import"
         module = self.base.methods_module(other).replace(f"{PACKAGE}.", "...", 1)
         return import_line(module, [f"{python_api.family_class(family)} as Base"])
 

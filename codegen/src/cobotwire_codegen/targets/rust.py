@@ -134,13 +134,13 @@ def _reported(type: Type) -> str:
 
 
 def _is_of_joints(type: Type) -> bool:
-    """Return whether a row has a number for each joint, so that it needs no other names."""
+    """Return whether the parts of a value type are j1, j2 and so on, so that an array suffices."""
     parts = type.items if isinstance(type, Value) else ()
     return [name for name, _ in parts] == [f"j{n}" for n in range(1, len(parts) + 1)]
 
 
 def _items(type: Value | Bits) -> list[tuple[str, str, str]]:
-    """Return name, type and description of each part of a row."""
+    """Return name, type and description of each part of a value type or of bits."""
     return [(name, _reported(item), api.item_doc(item)) for name, item in type.items]
 
 

@@ -27,7 +27,7 @@ from cobotwire_codegen.render.parameters import Parameter, parameters, reply_par
 
 # The types that annotations use without an import, and the names that the module imports.
 _TYPES = frozenset({"Client", "EventStream", "Promise", "Uint8Array", "describe", "table"})
-# The methods and attributes of every client, and those that would make it a promise.
+# The methods and attributes of every client, and `then`, which would make it a promise.
 _METHODS = frozenset(
     {"acknowledged", "at", "call", "close", "constructor", "events", "stream", "then", "withSignal"}
     | {"description", "line", "perform", "settings", "with"}
@@ -48,7 +48,7 @@ _WORDS = """
     void while with yield
 """
 _KEYWORDS = frozenset(_WORDS.split())
-# Keys that are for people or simulators, and that a client does not read; a page would load them.
+# Keys for people or simulators. Clients do not read them, and would only take longer to load.
 _WORDS_OF_OTHERS = """
     agrees_with changes disputed doc document encoders error_codes families firmware gripper
     joint_limits lines motion notes place samples servos title
@@ -91,7 +91,10 @@ def _rendered(edition: Edition, templates: Path | None, package: str) -> Files:
 
 
 def _for_clients(value: Any) -> Any:
-    """Return a part of a table without what a client does not read. Keys of effects are states."""
+    """Return a part of a table without the keys that clients do not read.
+
+    Effects are kept whole, because their keys can be names of states.
+    """
     if isinstance(value, list):
         return [_for_clients(each) for each in value]
     if not isinstance(value, dict):

@@ -27,8 +27,8 @@ EXPLANATIONS = (
     ),
     Explanation(
         "bad-arguments",
-        "`arguments` does not list every argument once, or lists one that can be left out before "
-        "one that must be given.",
+        "`arguments` does not list every argument once, or lists an optional argument before a "
+        "required one.",
         "The list is the order of the method's arguments, and Python wants those without a default "
         "first.",
         "Correct the list; it names fields of the request and parts of its text.",

@@ -8,7 +8,7 @@ from cobotwire_codegen.language.limits import PAGE
 EXPLANATIONS = (
     Explanation(
         "bad-frame",
-        "The codecs lack the frame format, or a reply does not fit it.",
+        "The codecs do not support the frame format, or a reply does not fit it.",
         "A frame has one to four header bytes, then LEN, CMD and an optional address in any order "
         "that does not end with the address, then data, and a check, a footer or both.",
         f"Correct what the message names; {PAGE} describes the frame.",
@@ -26,7 +26,7 @@ EXPLANATIONS = (
     ),
     Explanation(
         "bad-transport",
-        "The serial port needs a format that no client opens.",
+        "`transport` states a character format that no client supports.",
         "The clients open ports with 8 data bits, no parity and 1 stop bit.",
         "Correct the format; if the device really needs another one, it cannot be driven yet.",
         "parity: even",
@@ -42,7 +42,7 @@ EXPLANATIONS = (
     ),
     Explanation(
         "bad-id",
-        "A command's id is larger than CMD.",
+        "A command's id does not fit into CMD.",
         "CMD is one byte, or two with `command_bytes: 2` in the frame.",
         "Correct the id.",
         "id: 0x120",
@@ -116,7 +116,7 @@ EXPLANATIONS = (
     Explanation(
         "bad-effect",
         "An effect names a state, field or case that does not exist, or contradicts the command.",
-        "A simulated arm, the conformance tester and the reference do what the effect says.",
+        "The simulated arm, the conformance tester and the reference rely on the effect.",
         "Declare the state under `state:`, and name fields of the command's own messages.",
         "id: 0x23\neffect: {stores: pinz}\ntitle: Set a pin",
         "id: 0x23\ntitle: Set a pin",
@@ -131,7 +131,7 @@ EXPLANATIONS = (
     ),
     Explanation(
         "bad-agreement",
-        "`agrees_with` names a command that is not a query, or belongs to one that is not.",
+        "`agrees_with` names a command that is not a query, or is a key of such a command.",
         "A conformance run sends both queries while the arm rests, and compares the replies.",
         "Name a query of the edition, or remove the key.",
         "agrees_with: move\nsafety: query",
@@ -220,7 +220,7 @@ EXPLANATIONS = (
     ),
     Explanation(
         "bad-text",
-        "A text is not `word {field}` in turn, with the fields as listed.",
+        "A text does not alternate words and `{field}`, or its fields are not those of the list.",
         "The words show where one field ends and the next starts.",
         "Name all fields in the order of the list, with words between them; end a reply with a "
         "field.",

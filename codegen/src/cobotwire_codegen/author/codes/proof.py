@@ -16,15 +16,15 @@ EXPLANATIONS = (
     Explanation(
         "bad-start-value",
         "A start is not a value of its state's type, or lies outside a limit.",
-        "A simulated device would report what no device can.",
+        "A simulated device would report a value that no real device can send.",
         "Give a value that the type allows, as a vector has it.",
         "level: {type: angle, start: 1000}",
         "level: {type: angle, start: 10}",
     ),
     Explanation(
         "bad-state",
-        "A state has the name of one that every arm has.",
-        "The simulator computes that state, so a declaration would have no effect.",
+        "A state has the name of a built-in state, which every arm has.",
+        "The simulator computes built-in states, so a declaration would have no effect.",
         "Remove the declaration, or rename the state.",
         "state:\n  moving: {type: flag}",
         "state:\n  level: {type: angle, start: 10}",

@@ -39,8 +39,8 @@ EXPLANATIONS = (
     ),
     Explanation(
         "bad-sign",
-        "`signed_at` is larger than any number of that many bytes.",
-        "Unsigned numbers above `signed_at` are negative; no number is above this one.",
+        "`signed_at` does not fit into the bytes of the wire type.",
+        "Raw values above `signed_at` stand for negative numbers; here no raw value is above it.",
         "Write 127 or 32767 for two's complement; remove it if no raw value is negative.",
         "signed_at: 70000",
         "signed_at: 32767",
@@ -72,8 +72,8 @@ EXPLANATIONS = (
     ),
     Explanation(
         "bad-size",
-        "Bits lie outside of their word, or two parts overlap; a size cannot be encoded, or varies "
-        "in a message that has several variants or several hundred sizes.",
+        "Bit fields overlap, or exceed their wire type. Or a size cannot be encoded, or it varies "
+        "in a message that has several variants, or that would have several hundred sizes.",
         "Each size of a message is a variant of its own, which decoders find by LEN.",
         "Correct the bits; bound the sizes, or give the message one variant.",
         "size: many",

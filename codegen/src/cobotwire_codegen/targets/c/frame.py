@@ -85,7 +85,7 @@ class CrcRegister:
 
     @property
     def mirrored(self) -> bool:
-        """Whether the bits of the result have the other order."""
+        """Whether the bits of the result are reversed."""
         return self.crc.refin != self.crc.refout
 
     def _placed(self, number: int) -> int:

@@ -1,4 +1,4 @@
-"""Lists the structs for bits, and for value types with floats or in lists."""
+"""Lists the structs for bits, and for value types that contain floats or are in lists."""
 
 from __future__ import annotations
 

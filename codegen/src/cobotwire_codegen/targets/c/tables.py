@@ -1,7 +1,7 @@
 """Builds the tables that the C codec interprets; equal runs are stored once.
 
-The general tables are for editions with floats, bits, bytes, texts or lists. The others consist of
-integers alone, and their tables are smaller.
+The general tables are for editions with floats, bits, bytes, texts or lists. All other editions
+have only integers, and smaller tables.
 """
 
 from __future__ import annotations
