@@ -13,9 +13,9 @@ from cobotwire_codegen import floats
 class Encoding:
     """Integers of ``width`` bytes. Other encodings are subclasses.
 
-    The bytes of a number are read as an unsigned number, which then becomes the raw value: an
-    integer above ``signed_at`` is negative. An encoding without a sign rule ignores ``signed_at``.
-    ``what`` names a number of the encoding in messages, and ``allowed`` lists its widths.
+    The bytes of a number are read as an unsigned number, which then becomes the raw value: above
+    ``signed_at`` it stands for a negative integer. An encoding without a sign rule ignores
+    ``signed_at``. ``what`` names such a number in messages, and ``allowed`` lists its widths.
     """
 
     what: ClassVar[str] = "an integer"

@@ -91,7 +91,7 @@ def enclose(
 
 def _number(form: FrameNumber, number: int) -> bytes:
     if number >= 1 << 8 * form.width:
-        raise ValueError(f"{number} is larger than its {form.width} bytes")
+        raise ValueError(f"{number} does not fit into {form.width} byte(s)")
     return number.to_bytes(form.width, form.order)
 
 
@@ -135,7 +135,7 @@ def remainder(crc: Crc, data: bytes) -> int:
 def _field(field: Field, values: dict[str, object]) -> bytes:
     type, value = field.type, values[field.name]
     if field.selector:
-        # The check reports a selector that is not a field of the message.
+        # The checks of the model report a selector that is not a field of the message.
         picked = str(values.get(field.selector))
         type = next((case for member, case in field.cases if member.name == picked), field.type)
     if field.const is not None:
@@ -224,7 +224,7 @@ def _chars(type: Chars, name: str, value: object) -> bytes:
     if type.padding is None:
         return _sized(type, name, data)
     if data.endswith(bytes([type.padding])):
-        raise ValueError(f"{name} ends with its padding")
+        raise ValueError(f"{name} ends with the padding byte, which decoders remove")
     return _sized(type, name, data.ljust(type.least, bytes([type.padding])))
 
 

@@ -154,9 +154,9 @@ def _pairs(
         names = [name for name in fields if name not in at]
         if len(names) == 1:
             return ((names[0], node.value),)
-        shown = ", ".join(names) or "none"
+        shown = f"the fields {', '.join(names)}" if names else "no field for a state"
         side = "the reply" if verb == "reports" else "the request"
-        message = f"{verb} of {reader.what} must map fields to states: {side} has {shown}"
+        message = f"{verb} of {reader.what} must map fields to states, since {side} has {shown}"
         reader.problem("bad-effect", message, node.place)
         return ()
     message = f"{verb} of {reader.what} must be a state, or a mapping from fields to states"

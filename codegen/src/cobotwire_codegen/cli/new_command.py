@@ -61,15 +61,15 @@ _NEEDED = {
     help="What it does, as in the spec: {stores: fan_speed}. A state that is new is declared with "
     "the type of its field.",
 )
-@click.option("--start", help="What a new state is at the start.")
+@click.option("--start", help="The value of a new state at the start.")
 @click.option("--source", default="", help="Lines of the document, such as 20-39.")
 @click.option("--dry-run", is_flag=True, help="Print the YAML and write nothing.")
 def new_command(file: str, dry_run: bool, **given: str | None) -> None:
     """Add a command to an edition, with a vector for each of its messages.
 
-    On a terminal, missing options are prompted for. The vectors contain the given frames, or
-    frames with the given values, or with values that would show a mistake. The result is checked
-    before anything is written; if it has problems, the files stay unchanged.
+    On a terminal, missing options are prompted for. The vectors contain the given frames, else
+    frames with the given values, else frames with values that would show a mistake. The result is
+    checked before anything is written; if it has problems, the files stay unchanged.
     """
     path = edition_path(file)
     with report_problems():
@@ -153,7 +153,7 @@ def _draft(given: dict[str, str | None]) -> Draft:
 
 
 def _new_states(draft: Draft, edition: Edition, start: str | None) -> Iterator[str]:
-    """Yield the declaration of each state that a draft stores or reports, and that is new."""
+    """Yield the declaration of each new state that a draft stores or reports."""
     node = parse(draft.effect or "{}", "--effect")
     entries = node.entries if isinstance(node, Mapping) else {}
     types = {name: type for name, type, echo in (*draft.request, *draft.reply) if not echo}

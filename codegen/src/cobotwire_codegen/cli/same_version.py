@@ -1,4 +1,4 @@
-"""Refuse to work with a cobotwire of another version: its clients run what this generates."""
+"""Refuse to work if the installed cobotwire has another version, since it runs generated code."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def check() -> None:
     cobotwire itself need not be installed: ``check``, ``diff`` and others work without it.
 
     Raises:
-        UsageError: cobotwire is installed, in another version.
+        UsageError: the installed cobotwire has another version.
     """
     ours = version("cobotwire-codegen")
     try:
@@ -29,7 +29,7 @@ def check() -> None:
 
 
 def print_version(context: click.Context, option: click.Parameter, wanted: bool) -> None:
-    """Print the version, and exit; fail if cobotwire is of another version."""
+    """Print the version, and exit; fail if the installed cobotwire has another version."""
     if wanted and not context.resilient_parsing:
         click.echo(f"cobotwire-gen {version('cobotwire-codegen')}")
         check()

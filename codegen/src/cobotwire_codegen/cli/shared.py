@@ -1,4 +1,4 @@
-"""What the verbs share: options, reading editions, and reporting problems."""
+"""Options and functions that subcommands share: reading editions, and reporting problems."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def edition_path(file: str) -> Path:
     """Return the path of the edition file that the command line names."""
     path = Path(file)
     if not path.is_file():
-        clone = "; it comes with a clone of the project: name your own file"
+        clone = "; only a clone of the project has this default: name your own file"
         hint = clone if file == DEFAULT_EDITION else ""
         raise click.UsageError(f"there is no file {file}{hint}")
     return path

@@ -26,10 +26,10 @@ def word_at(text: str, line: int, column: int) -> str:
 
 
 def hover(workspace: Workspace, path: Path, line: int, column: int) -> str:
-    """Return what is at a position, as plain text; empty if there is nothing to say.
+    """Return an explanation of a position, as plain text; empty if there is none.
 
-    In a vector the explanation is the frame byte by byte, at a key its meaning, at a name its
-    definition.
+    A key is explained by its meaning, a name by its definition, and other places in a vector by the
+    bytes of its frame.
     """
     text, edition = workspace.text(path), workspace.edition(path)
     word = word_at(text, line, column)
@@ -65,8 +65,8 @@ def _vector_at(workspace: Workspace, edition: Edition, path: Path, line: int) ->
 def definition(workspace: Workspace, path: Path, line: int, column: int) -> tuple[Path, Place]:
     """Return the file and the place where the word at a position is defined.
 
-    From a delta, the definition is in its base: the base's file, or the part that the delta changes
-    or removes.
+    For a name in a delta, this may be a place in its base: the base's file, or the part that the
+    delta changes or removes.
 
     Raises:
         LookupError: nothing of the spec has that name.

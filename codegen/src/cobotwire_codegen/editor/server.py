@@ -14,7 +14,7 @@ from cobotwire_codegen.errors import Place, Problem
 
 
 def serve(version: str) -> None:
-    """Answer one editor over stdin and stdout until it disconnects."""
+    """Serve one editor over stdin and stdout until it disconnects."""
     make_server(version).start_io()
 
 

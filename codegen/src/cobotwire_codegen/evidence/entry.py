@@ -113,7 +113,10 @@ def _shows(edition: Edition, command: Command, fact: Reported, known: Known) -> 
 def _vectors(
     edition: Edition, facts: list[Reported], known: Known, name: str
 ) -> Iterator[list[str]]:
-    """Yield a vector for each new frame that the edition reads; contradicted ones prove nothing."""
+    """Yield a vector for each new frame that the edition reads.
+
+    Frames of a command with a contradicted fact are left out, since they prove nothing.
+    """
     held = {(vector.command, vector.frame) for vector in edition.vectors}
     doubted = {fact.fact.partition("/")[0] for fact in facts if not fact.confirmed}
     shown: Counter[tuple[str, Direction]] = Counter()
@@ -156,7 +159,7 @@ def text_of(given: Submitted, entry: Entry) -> str:
 
 
 def _shown(fact: Reported) -> str:
-    """Return why a fact is contradicted, and the last frame of each exchange."""
+    """Return why a fact is contradicted, and the last frame of each exchange, as YAML."""
     if fact.confirmed:
         return ""
     why = f", why: {_quoted(fact.why)}" if fact.why else ""

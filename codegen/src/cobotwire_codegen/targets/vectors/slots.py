@@ -1,4 +1,4 @@
-"""Splits messages into single numbers, with their places and legal values."""
+"""Splits messages into single numbers, with their encodings and legal values."""
 
 from __future__ import annotations
 

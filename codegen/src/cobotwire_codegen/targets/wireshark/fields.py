@@ -1,8 +1,8 @@
 """Declares the dissector's fields: their names in filters, and their types.
 
-A filter name means one thing. ``mycobot.angle`` is the field ``angle`` of every command that has
-one. If commands use a name for different units or labels, the command's name comes in between:
-``mycobot.jog_angle.direction``.
+Each filter name has one meaning. ``mycobot.angle`` is the field ``angle`` of every command that has
+one. If commands use a field name with different units or labels, the filter name also contains the
+command's name: ``mycobot.jog_angle.direction``.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _APART = {"STRING": "text", "BYTES": "bytes", "NONE": "group"}
 class Shown(NamedTuple):
     """A field of Wireshark: its display name, its name in filters, its type.
 
-    Some bits of a word have a ``mask``, and ``word`` is the number of bits of the word.
+    If it shows some bits of a word, ``mask`` selects them, and ``word`` is the word's size in bits.
     """
 
     title: str

@@ -8,7 +8,7 @@ from cobotwire_codegen.model import Frame, FrameNumber
 
 
 def frame_table(frame: Frame) -> dict[str, Any]:
-    """Return what the dissector must know of the frames."""
+    """Return what the dissector needs to know about frames."""
     sizes = frame.sizes
     data_at = {"request": frame.data_at("request"), "reply": frame.data_at("reply")}
     layout = [part for part in frame.layout if sizes[part]]

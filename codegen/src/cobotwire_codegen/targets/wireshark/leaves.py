@@ -10,7 +10,7 @@ from cobotwire_codegen.render.words import units
 
 
 class Leaf(NamedTuple):
-    """One number, text or row of bytes.
+    """One number, text or byte string.
 
     ``kind`` is a name of Wireshark's ``ftypes``; ``mask`` has the bits of a part of a word, or is
     0. ``reading`` says how the dissector reads it; a plain number needs no further values.
@@ -62,7 +62,7 @@ def _numbers(type: Type) -> Iterator[Leaf]:
 
 
 def _reading(number: dict[str, Any]) -> dict[str, Any]:
-    """Return what the dissector must know of a number that the codecs read."""
+    """Return what the dissector needs to know to read a number."""
     keys = ("name", "width", "order", "signed_at", "minimum", "maximum", "unit")
     reading = {key: number[key] for key in keys if number[key] != ""}
     if "unit" in reading:
@@ -73,7 +73,7 @@ def _reading(number: dict[str, Any]) -> dict[str, Any]:
 
 
 def _float(reading: dict[str, Any], type: Quantity) -> dict[str, Any]:
-    """Return a float's reading: its bounds are values, since a double cannot hold all raw ones."""
+    """Return a float's reading. Its bounds are physical, since Lua cannot hold all raw values."""
     del reading["minimum"], reading["maximum"], reading["signed_at"]
     bounds = {} if type.not_finite else dict(zip(("minimum", "maximum"), type.bounds))
     exact = {key: float(type.exact(raw)) for key, raw in bounds.items()}
