@@ -62,5 +62,5 @@ class Float(Encoding):
         return raw if raw >= 0 else 256**width // 2 - 1 - raw
 
 
-# By the word of the spec; the first one is the default.
+# The encodings by their names in specs; the first one is the default.
 ENCODINGS: dict[str, Encoding] = {"integer": Encoding(), "float": Float()}

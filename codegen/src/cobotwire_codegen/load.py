@@ -103,7 +103,7 @@ def _decoded(data: bytes, name: str) -> str:
         return data.decode()
     except UnicodeDecodeError as error:
         if len(data) > MOST_BYTES:
-            return " " * len(data)  # the cut may be inside a character; the size is reported
+            return " " * len(data)  # cut inside a character; ``parsed`` reports the size
         before = data[: error.start].decode()
         message = f"the byte {data[error.start]:02X} is not UTF-8; save the file as UTF-8"
         raise SpecError([Problem(_at(before, name), "unreadable", message)]) from error

@@ -75,7 +75,7 @@ def enclose(
     direction: Literal["request", "reply"] = "request",
     address: int | None = None,
 ) -> bytes:
-    """Return the frame around data bytes; ``address`` is by default the first that frames have.
+    """Return the frame around data bytes. The default address is the first of the frame format.
 
     Raises:
         ValueError: the id or LEN is too large.

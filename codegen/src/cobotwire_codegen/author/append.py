@@ -68,7 +68,7 @@ def files_of(path: Path) -> Iterator[Path]:
     root = load(path)
     entries = root.entries if isinstance(root, Mapping) else {}
     base = entries.get("base")
-    # An edition of a package is found from anywhere.
+    # A base such as `cobotwire:mycobot280` is no path; files of an installed package do not change.
     if isinstance(base, Scalar) and not names_package(str(base.value)):
         yield from files_of(path.parent / str(base.value))
     for key in _LISTED:

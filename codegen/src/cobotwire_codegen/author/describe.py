@@ -33,7 +33,7 @@ def describe_code(explanation: Explanation) -> str:
 
 
 def describe_keys() -> dict[str, str]:
-    """Return what each key of the language means in each record that has it."""
+    """Return the meanings of each key of the language, one for each record that has it."""
     found: dict[str, list[str]] = {}
     for record in schema.records(FILES.values()):
         if not isinstance(record, Choice):

@@ -13,7 +13,8 @@ MAGIC = b"\n\r\r\n"
 _ORDERS = {b"\x4d\x3c\x2b\x1a": "<", b"\x1a\x2b\x3c\x4d": ">"}
 _INTERFACE, _PACKET = 1, 6  # types of blocks
 _FLAGS = 2  # the option with the direction, in the two lowest bits
-# By the two bits. An outbound packet (2), which the recording program wrote, is a request.
+# The direction for each value of the two bits. The recording program wrote an outbound packet (2),
+# which is a request.
 _DIRECTIONS = ("both", "reply", "request", "both")
 
 

@@ -55,8 +55,8 @@ def typical_values(edition: Edition, command: Command, variant: Variant) -> dict
     """Return legal values of a variant that would show a mistake in the spec.
 
     Numbers are asymmetric, so that a wrong byte order changes the frame. Fields and elements differ
-    from each other where possible, so that exchanging two of them shows. A field has the same value
-    in request and reply. Lists have three elements if the frame has room.
+    from each other where possible, so that swapping two of them changes the frame. A field has the
+    same value in request and reply. Lists have three elements if the frame has room.
     """
     # Flags have their own numbering, so that the first one is true.
     names = {

@@ -58,7 +58,7 @@ def _check_frame(frame: Reader, built: Frame, known: int) -> None:
     for shown, limit in beyond_language(built, stuffing):
         if not any(limit.message in problem.message for problem in frame.problems[known:]):
             frame.problem("cannot-say", shown + limit.message)
-    # Rules that compare keys need all of them.
+    # These rules compare keys with each other, so they need keys without problems.
     for message in mistakes(built) if len(frame.problems) == known else ():
         frame.problem("bad-frame", message)
 

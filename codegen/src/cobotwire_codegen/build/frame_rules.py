@@ -19,7 +19,7 @@ from cobotwire_codegen.model import Frame
 
 _FIXED = ("address", "length", "command")
 _PARTS = ("header", *_FIXED, "data", "check", "footer")
-# The longest LEN of two bytes that the codecs support.
+# The highest LEN of two bytes that the codecs support.
 _LONGEST = 0x4000
 
 # The third byte of MSP, after `$M` in version 1 and `$X` in version 2.
@@ -27,7 +27,7 @@ _DIRECTIONS = (b"<", b">", b"!")
 
 
 def beyond_language(frame: Frame, stuffing: bool | None) -> Iterator[tuple[str, Limit]]:
-    """Yield features of frames that a spec cannot state, each with what shows it.
+    """Yield features of frames that a spec cannot state, each after words that name the evidence.
 
     ``stuffing`` is the spec's statement about byte stuffing.
     """

@@ -15,7 +15,7 @@ from cobotwire_codegen.language.names import IN_PACKAGE
 
 
 def names_package(base: str) -> bool:
-    """Return whether a base is an edition of a package, as ``cobotwire:mycobot280`` is."""
+    """Return whether a base is an edition of a package, such as ``cobotwire:mycobot280``."""
     return re.search(IN_PACKAGE, base) is not None
 
 

@@ -69,7 +69,7 @@ class Parts:
     state: Named = field(default_factory=dict)
     own_state: set[str] = field(default_factory=set)
     acks: Node | None = None
-    # Commands that the rule in `acks` no longer covers, by changes of a delta.
+    # Commands that a delta exempts from the rule in `acks`.
     unacknowledged: set[str] = field(default_factory=set)
     types: dict[str, Named] = field(
         default_factory=lambda: {name: {} for name in language.SECTIONS}

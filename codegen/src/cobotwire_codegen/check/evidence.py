@@ -156,7 +156,7 @@ def errata_name_commands(edition: Edition) -> Iterator[Problem]:
 
 
 def facts_named(edition: Edition) -> Iterator[Problem]:
-    """Report facts of unknown commands, parts or aspects that evidence or disputes name."""
+    """Report evidence and disputes about unknown commands, parts or aspects."""
     named = [(fact.place, fact.fact) for each in edition.observed for fact in each.facts]
     for command in edition.commands:
         named += [(d.place, f"{command.name}/{d.about}") for d in command.disputed if d.about]

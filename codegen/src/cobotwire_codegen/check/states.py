@@ -208,7 +208,7 @@ def _beyond(
 ) -> Iterator[str]:
     """Yield the indices of a command that a state does not have.
 
-    If ``at`` names no argument for the last index, the command has a value for each of its values.
+    If ``at`` leaves out the last index, the field holds one value for each value of that index.
     """
     at = effect.at
     if len(state.each) - len(at) not in (0, 1):

@@ -40,7 +40,7 @@ def variants_apart(edition: Edition) -> Iterator[Problem]:
 
 
 def sizes_bounded(edition: Edition) -> Iterator[Problem]:
-    """Report messages with too many sizes, and varying sizes beside several variants."""
+    """Report messages with too many sizes, or with several variants and a size that varies."""
     for command in edition.commands:
         for direction in _DIRECTIONS:
             variants = command.variants(direction)

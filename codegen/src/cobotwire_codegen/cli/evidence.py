@@ -122,8 +122,8 @@ def _show(home: Path, before: Edition, after: Edition, given: Submitted, entry: 
 def list_(names: tuple[str, ...], edition_file: str | None, as_json: bool, root: str) -> None:
     """List the facts of each EDITION that no arm has confirmed; without EDITION, count for all.
 
-    A fact counts as confirmed by an arm if a public capture or an owner's survey shows it. The
-    maker's library and pages are counted as well.
+    A fact counts as confirmed by an arm if a public capture or an owner's survey shows it. Facts
+    that the maker's library or pages confirm are counted separately.
     """
     with report_problems():
         if edition_file:

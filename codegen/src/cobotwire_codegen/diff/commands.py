@@ -102,7 +102,7 @@ def _success(command: Command) -> str:
 
 def _messages(where: str, old: Command, new: Command, known: Known) -> Iterator[Finding]:
     if old.event != new.event:
-        # An event has no method and no request: this is reported as one change.
+        # An event has neither method nor request; event-changed already reports that.
         yield from message_changes(f"{where}/reply", old, new, "reply", known)
         return
     found = list(message_changes(f"{where}/request", old, new, "request", known))

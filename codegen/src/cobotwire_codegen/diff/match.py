@@ -68,7 +68,7 @@ def order(where: str, matched: Matched[T], label: Callable[[T], str]) -> Iterato
 
 
 def renamed(old: Sequence[str], new: Sequence[str]) -> dict[str, str] | None:
-    """Return the renamed names; None if the lists differ in more than names at one position."""
+    """Return the new name of each renamed item; None if the lists differ in another way."""
     changed = {a: b for a, b in zip(old, new) if a != b}
     same_places = len(old) == len(new) and not set(changed) & set(new)
     return changed if same_places and not set(changed.values()) & set(old) else None

@@ -24,7 +24,7 @@ _MARKS = {mark: f"\\{mark}" for mark in "\\`*_[]<>|#"}
 
 
 def text(outcome: Outcome) -> Iterator[tuple[str, str]]:
-    """Return pairs of a kind and a line; the kind is a level for headings, else mostly empty."""
+    """Return pairs of a kind and a line. The kind (a level, waived, unused) selects the colour."""
     for level, findings in _grouped(outcome):
         yield level, f"{level} ({len(findings)}): {LEVELS[level]}"
         for one in findings:

@@ -32,7 +32,9 @@ class Rule:
 
 _WIRE = {
     "address-replies-changed": "`replies` changed from {old} to {new}: replies are mismatched",
-    "addresses-changed": "addresses changed from ({old}) to ({new}): frames reach others, or none",
+    "addresses-changed": (
+        "the addresses changed from ({old}) to ({new}): frames reach other devices, or none"
+    ),
     "argument-added-required": "the request now carries {new}: callers must pass it",
     "argument-removed": "the request no longer carries {old}: callers cannot pass it",
     "baudrate-changed": "the baud rate changed from {old} to {new}: peers receive noise",
@@ -48,7 +50,7 @@ _WIRE = {
     "enum-member-renumbered": "{old} became {new}: the member has another raw value",
     "footer-changed": "the footer changed from {old} to {new}: peers reject each other's frames",
     "layout-changed": "the layout changed from [{old}] to [{new}]: frames are rejected",
-    "header-changed": "the header changed from {old} to {new}: to peers, the frames are noise",
+    "header-changed": "the header changed from {old} to {new}: peers take the frames for noise",
     "id-changed": "the id changed from {old} to {new}: requests reach another command, or none",
     "items-changed": "the parts changed from ({old}) to ({new}): numbers are misread or rejected",
     "not-finite-changed": "legal values changed from {old} to {new}: one side rejects NaN",
@@ -81,7 +83,7 @@ _API = {
     "edition-removed": "the edition {old} was removed",
     "edition-renamed": "the edition {old} is now {new}: its import name changes",
     "enum-member-renamed": "the member {old} is now {new}; its raw value stays the same",
-    "enum-member-truth-changed": "in a condition it changed from {old} to {new}",
+    "enum-member-truth-changed": "as a condition, it was {old}, and is now {new}",
     "item-renamed": "the part {old} is now {new}; its position stays the same",
     "radians-changed": "callers used {old}, now use {new}: the same number is another angle",
     "result-now-optional": "it was always present, and may now be missing",
@@ -117,7 +119,10 @@ _BEHAVIOUR = {
     "safety-changed": "safety changed from {old} to {new}: retries and conformance runs differ",
     "selector-added": "its type now depends on {new}; the effects are listed separately",
     "selector-removed": "its type depended on {old}; the effects are listed separately",
-    "shared-id-order-changed": "frames get the first name; order changed from ({old}) to ({new})",
+    "shared-id-order-changed": (
+        "a frame gets the name of the first of these commands: the order changed from ({old}) to "
+        "({new})"
+    ),
     "silence-changed": "the silence that ends the text changed from {old} ms to {new} ms",
 }
 _PEER = {

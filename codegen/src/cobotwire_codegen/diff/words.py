@@ -81,7 +81,7 @@ def layout(frame: Frame) -> str:
         for part in frame.layout
     ]
     replies = "" if frame.replies_have_command else "; replies have no command"
-    # Whether the frame ends with a check or a footer is reported by their own rules.
+    # Other rules report whether a frame ends with a check or a footer, so both look alike here.
     end = "check or footer"
     counted = {{"check": end, "footer": end}.get(part, part) for part in frame.counted}
     return f"{', '.join(parts)}; LEN counts {', '.join(sorted(counted))}{replies}"

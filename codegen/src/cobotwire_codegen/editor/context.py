@@ -53,7 +53,7 @@ def _root(text: str) -> Described:
 
 
 def _block_path(lines: list[str], line: int, before: str) -> list[str]:
-    """Return the keys of the lines above that contain a position, outermost first."""
+    """Return the keys in the lines above a position that contain it, outermost first."""
     path: list[str] = []
     start = _START.match(before)
     assert start is not None, "the pattern matches any text"

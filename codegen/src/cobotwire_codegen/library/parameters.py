@@ -8,7 +8,7 @@ from itertools import zip_longest
 from cobotwire_codegen.library.model import QUIET, LibraryClass, Method, Parameter
 from cobotwire_codegen.render.arguments import Argument, arguments
 
-# What constructors take besides the place to open. Only ``debug`` has an effect.
+# Parameters of constructors besides those that say what to open. Only ``debug`` has an effect.
 _OPTIONS = {
     "debug": "bool",
     "save_serial_log": "bool",

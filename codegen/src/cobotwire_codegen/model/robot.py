@@ -87,7 +87,7 @@ Part = Geometry | Motion | Encoders | Gripper | Servos | ErrorCodes
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """The parts that an edition states; None or empty: it does not."""
+    """The parts that an edition states; those that it does not state are None or empty."""
 
     geometry: Geometry | None = None
     motion: Motion | None = None

@@ -119,7 +119,7 @@ def source_words(
     errata: Sequence[Erratum],
     derived: Sequence[Vector],
 ) -> str:
-    """Return the summary of a command's sources, which a click on it unfolds."""
+    """Return the summary line under which the sources of a command are folded."""
     mistakes = "1 mistake" if len(errata) == 1 else f"{len(errata)} mistakes"
     parts = (
         (

@@ -48,7 +48,7 @@ _WORDS = """
     void while with yield
 """
 _KEYWORDS = frozenset(_WORDS.split())
-# Keys for people or simulators. Clients do not read them, and would only take longer to load.
+# Keys for people or simulators. Clients do not read them; without them a module is smaller.
 _WORDS_OF_OTHERS = """
     agrees_with changes disputed doc document encoders error_codes families firmware gripper
     joint_limits lines motion notes place samples servos title

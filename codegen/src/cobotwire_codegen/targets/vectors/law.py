@@ -76,7 +76,7 @@ class Law:
         return self._end_fault(data)
 
     def _part_fault(self, data: bytes, part: str) -> Fault | None:
-        """Return why a part, with those before it, rejects a frame; None if it does not."""
+        """Return why a frame is rejected at a part, given those before it; None if it is not."""
         frame, at = self._frame, self._frame.offset(part)
         if len(data) < at + frame.sizes[part]:
             return Fault("truncated", len(data))

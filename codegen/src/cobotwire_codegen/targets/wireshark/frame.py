@@ -51,7 +51,7 @@ def _spans(values: tuple[int, ...]) -> list[list[int]]:
 
 
 def _check(frame: Frame) -> dict[str, Any]:
-    """Return the check and its first byte; nothing if frames have only a footer."""
+    """Return the check and where it starts to cover; empty if frames have only a footer."""
     check = frame.check
     if check is None:
         return {}
