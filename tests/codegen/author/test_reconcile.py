@@ -69,7 +69,7 @@ def test_scan_skips_noise_and_truncated_frames() -> None:
 
 def test_reconcile_reports_a_known_id_with_an_unknown_length() -> None:
     [news] = _reconciled(_frame(0x20, b"\x01"))[1]
-    assert news.why == "get_angles has no such length"
+    assert news.why == "get_angles has no message of this length"
 
 
 def test_reconcile_knows_only_messages_of_the_given_direction() -> None:

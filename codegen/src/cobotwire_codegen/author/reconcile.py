@@ -81,8 +81,10 @@ def reconcile(edition: Edition, capture: Sequence[Packet]) -> tuple[int, list[Ne
         effects.setdefault(reported.kind, ("reports", stored.id))
     found = []
     for key, seen_frames in sorted(groups.items()):
-        prefix = "" if key[2] == "both" else f"{key[2]} of "
-        why = f"{ids[key[0]]} has no {prefix}such length" if key[0] in ids else "the id is unknown"
+        kind = "message" if key[2] == "both" else key[2]
+        why = (
+            f"{ids[key[0]]} has no {kind} of this length" if key[0] in ids else "the id is unknown"
+        )
         guesses = guess([seen.data for seen in seen_frames])
         types = tuple(fitting(edition, item, seen_frames, values) for item in guesses)
         effect, other = effects.get(key, ("", 0))

@@ -58,7 +58,7 @@ def fitting(edition: Edition, item: Guess, frames: Sequence[Seen], known: Known)
         return "", ""
     key, near, scale = _following(pieces, frames, known)
     if near is not None and (near.size, near.scale) != (item.width, scale):
-        return "", f"equals {key}: a new quantity, {near.unit}, scale {scale}"
+        return "", f"equals {key}; it needs a new quantity: {near.unit}, scale {scale}"
     fits = [
         (_width(type), type)
         for type in (edition.types if near is None else (near,))

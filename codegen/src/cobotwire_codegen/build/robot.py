@@ -68,7 +68,9 @@ def _geometry(node: Node, joints: int, problems: list[Problem]) -> Geometry:
         links.append(_link(row, _after(links), problems))
     turning = {joint for link in links for joint, share in link.turned_by if share}
     if turning != set(range(1, joints + 1)):
-        message = f"each of the {joints} joints must turn a link of the geometry, and no other"
+        message = (
+            f"each of the {joints} joints, and no other joint, must turn a link of the geometry"
+        )
         reader.problem("bad-number", message)
     return Geometry(tuple(links), reader.get(spec.doc))
 

@@ -246,7 +246,7 @@ class Types:
         least, most = reader.get(spec.size)
         padding, word = reader.get(spec.padding), reader.get(spec.encoding)
         if padding >= 0 and (least < most or padding > 127):
-            message = f"the text {name} varies in size, or its padding is not ASCII"
+            message = f"the padded text {name} must have a fixed size, and an ASCII padding byte"
             reader.problem("bad-size", message, reader.place_of(spec.padding))
         encoding: Literal["ascii", "utf-8", "latin-1"] = "ascii"
         if word != "ascii":

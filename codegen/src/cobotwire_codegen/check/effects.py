@@ -141,7 +141,7 @@ def _wrong_cases(effect: Effect, selector: Field | None) -> Iterator[str]:
         if not low <= raw <= high or (members and raw not in members.values()):
             yield f"{selector.name} is never {case}"
         if raw in found:
-            yield f"the cases {found[raw]} and {case} are the same value of {selector.name}"
+            yield f"the cases {found[raw]} and {case} mean the same value of {selector.name}"
         found[raw] = case
     for name, raw in members.items():
         if raw not in found:

@@ -85,7 +85,7 @@ def text_vectors_hold(edition: Edition) -> Iterator[Problem]:
         )
         if built != vector.text:
             yield Problem(
-                vector.place, "vector-differs", f"{vector.name}: the values encode to {built}"
+                vector.place, "vector-differs", f"{vector.name}: the values encode to `{built}`"
             )
 
 

@@ -176,7 +176,7 @@ def _needs(edition: Edition) -> dict[str, tuple[str, Callable[[Command], bool]]]
             _reads_row(coordinates),
         ),
         "motion ended": (
-            "it must be an event, and its last field a status",
+            "it must be an event, and the last field of its reply must be a status",
             lambda c: c.event and any(c.replies[:1]) and not _parts(c.replies[0][-1]),
         ),
         "gripper": ("it must take first a state, OPEN or CLOSE, then a speed", _grips),
@@ -202,7 +202,9 @@ def events_fit(edition: Edition) -> Iterator[Problem]:
     for command in edition.commands:
         sent = command.requests or command.ack or command.text or command.request_text
         if command.event and (sent or not command.replies or command.safety != "query"):
-            message = f"{command.name} is an event: it must have a reply, no request, safety query"
+            message = (
+                f"the event {command.name} must have a reply, no request, and the safety query"
+            )
             yield Problem(command.place, "bad-event", message)
 
 

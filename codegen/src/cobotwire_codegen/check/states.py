@@ -170,7 +170,8 @@ def _unlike_built_in(field: Field | None, name: str, effect: Effect, joints: int
     row = name in _JOINT_ROWS or name in _AXIS_ROWS
     size = 0 if field is None else len(field.type.parts)
     if len(effect.at) > (1 if row else 0):
-        yield f"{name} has {'one index' if row else 'no index'}, but `at` names {len(effect.at)}"
+        given = f"`at` names {len(effect.at)} argument(s)"
+        yield f"{name} has {'one index' if row else 'no index'}, but {given}"
     elif effect.verb != "sets" and field is None:
         yield f"{name} is not a text"
     elif field is not None and field.type.kind in ("value", "list"):
@@ -213,7 +214,7 @@ def _beyond(
     at = effect.at
     if len(state.each) - len(at) not in (0, 1):
         count = f"{len(state.each)} {'index' if len(state.each) == 1 else 'indices'}"
-        yield f"{state.name} has {count}, but `at` names {len(at)}"
+        yield f"{state.name} has {count}, but `at` names {len(at)} argument(s)"
         return
     if effect.verb == "sets":
         # A fixed value may also be set for every joint (254), or for one of another limb.

@@ -25,7 +25,9 @@ def ranges_encodable(edition: Edition) -> Iterator[Problem]:
         elif lowest < quantity.wire.minimum or highest > quantity.wire.maximum:
             low = float(quantity.wire.minimum * quantity.scale)
             high = float(quantity.wire.maximum * quantity.scale)
-            message = f"the range of {quantity.name} is wider than its wire type: {low:g}..{high:g}"
+            message = (
+                f"the range of {quantity.name} exceeds that of its wire type, {low:g}..{high:g}"
+            )
             yield Problem(quantity.place, "range-too-wide", message)
 
 
