@@ -13,7 +13,7 @@ from cobotwire_codegen.model import Change, Dispute, Edition, Lines, Observation
 def doc(where: str, old: str, new: str) -> Iterator[Finding]:
     """Compare a description."""
     if old != new:
-        yield finding("doc-changed", where, words.short(old), words.short(new))
+        yield finding("doc-changed", where, *map(words.in_quotes, (old, new)))
 
 
 def source(where: str, old: Lines, new: Lines) -> Iterator[Finding]:

@@ -153,7 +153,7 @@ _DOCS = {
     "dispute-added": "now disputed: {new}",
     "dispute-changed": "a dispute changed: {new}",
     "dispute-removed": "no longer disputed: {old}",
-    "doc-changed": 'changed from "{old}" to "{new}"',
+    "doc-changed": "changed from {old} to {new}",
     "erratum-added": "a new erratum: {new}",
     "erratum-changed": "an erratum changed: {new}",
     "erratum-removed": "an erratum was removed: {old}",

@@ -28,6 +28,7 @@ __all__ = [
     "effect",
     "firmware",
     "frame_check",
+    "in_quotes",
     "layout",
     "lines",
     "member",
@@ -46,6 +47,11 @@ __all__ = [
 def short(text: str) -> str:
     """Return a text, cut if it is longer than ``LONGEST``; the spec has the full text."""
     return text if len(text) <= LONGEST else text[: LONGEST - 3].rstrip() + "..."
+
+
+def in_quotes(text: str) -> str:
+    """Return a text, cut if it is long, in quotes; empty if there is none."""
+    return f'"{short(text)}"' if text else ""
 
 
 def firmware(stated: Firmware | None) -> str:
