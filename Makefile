@@ -3,9 +3,9 @@
 PYTHON ?= python3
 BIN := .venv/bin
 RUST_SOURCES := $(shell find rust/core rust/py rust/simd -name '*.rs' -o -name Cargo.toml) Cargo.toml
-# This stamp is newer than the editions of the Rust client, which git does not have.
+# A stamp of the last `cobotwire-gen --rust-data`. It writes the editions of the Rust client, which git ignores.
 RUST_DATA := .venv/.rust-data
-# Exclude the Python module: it has no Rust tests, and compiles its dependencies with more features.
+# Exclude the Python module: it has no Rust tests, and shared dependencies would be compiled again with its features.
 TESTED := --workspace --exclude cobotwire-native
 # The Python tests run in five lanes at once, which should end together. The first only computes. It
 # lets the others go first (nice), because they also have tests that wait for a reply until a
@@ -217,7 +217,7 @@ urdf: .venv/.tools .venv/.native ## compare the poses of our URDF files with you
 archives: .venv/.tools .venv/.native ## export and query archives on a Dask cluster and an S3 server
 	$(BIN)/python -m pytest tests/capture/archive -o python_files='test_*.py on_*.py'
 
-# It has an environment of its own, because it requires torch: about 8 GB.
+# LeRobot gets an environment of its own, because it requires torch: about 8 GB.
 lerobot: .venv/.tools .venv/.native ## record and replay an episode with the real LeRobot: make lerobot LEROBOT='lerobot[core-scripts]==0.6.1' PYTHON=python3.12
 	$(PYTHON) -m venv target/lerobot
 	target/lerobot/bin/python -m pip install --quiet --no-compile '$(LEROBOT)' . ./adapters/lerobot
@@ -231,7 +231,7 @@ wheels-check: .venv/.base ## build the distributions; run README, website and th
 release-check: .venv/.tools .venv/.native ## compare API, editions, spec language and recordings with the last release, or with the revision SINCE
 	$(BIN)/python tools/promises.py $(SINCE)
 
-layer: .venv/.tools .venv/.native ## compare every call of the maker's classes with ours of the same names
+layer: .venv/.tools .venv/.native ## call each method of the maker's classes and of ours; compare them
 	PYTHONPATH=python:codegen/src:tests:tests/peers $(BIN)/python -W ignore -m layer_main
 
 faults: .venv/.tools .venv/.native ## run our client and pymycobot on each fault; write docs/fault-scenarios.md
@@ -272,11 +272,11 @@ $(RUST_DATA): .venv/.tools $(shell find spec codegen/src -type f -not -name '*.p
 	$(BIN)/cobotwire-gen --rust-data
 	touch $@
 
-# For editors; `make gen` keeps it up to date.
+# Editors use the schema; `make gen` keeps it up to date.
 spec/schema.json: .venv/.tools .venv/.native
 	$(BIN)/cobotwire-gen schema
 	touch $@
 
-# Install it in the project, so that other projects keep their version.
+# Install cargo-fuzz in the project, so that other projects keep their version.
 $(CARGO_FUZZ):
 	cargo install --quiet --locked --root .cargo-tools --version 0.13.1 cargo-fuzz
