@@ -2,7 +2,7 @@
 
 The time is that of this process alone, system calls included; the arms are in another process. It
 is compared with the least that asyncio needs for the same bytes: a send, a future, and a reader
-that receives. Both alternate, and the fastest turn of each counts.
+that receives. The two alternate, and the fastest turn of each counts.
 """
 
 from __future__ import annotations

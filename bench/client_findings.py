@@ -1,4 +1,4 @@
-"""Run a session of pymycobot 4.0.7 and of our clients with the referee; print the failures.
+"""Run a session of pymycobot 4.0.7 and of our clients against the client tester; print the failures.
 
 .venv/bin/python bench/client_findings.py                 # all clients, all lines
 .venv/bin/python bench/client_findings.py --only cobotwire
@@ -69,7 +69,7 @@ def play(library: str, url: str) -> list[str]:
             by_name = library.startswith(("rust", "node")) and call.fields
             try:
                 result = getattr(arm, call.name)(*(by_name or call.arguments))
-            except Exception as error:  # any exception is listed, and the session continues
+            except Exception as error:  # list any exception, and continue the session
                 failures.append(f"{call.name}: {type(error).__name__}: {error}")
             else:
                 if library in AS_LIBRARY and result in (None, -1):

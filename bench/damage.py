@@ -68,7 +68,7 @@ def noisy(
             random.choice(line.starts, pieces),
         )
     )
-    # Pieces for the same place follow each other there.
+    # Pieces for the same place are inserted one after another.
     bursts = np.full(len(places), pieces // len(places))
     bursts[: pieces % len(places)] += 1
     picks = iter(random.integers(0, len(pool), pieces).tolist())
@@ -82,7 +82,7 @@ def noisy(
 
 
 def apply(line: Line, edits: list[Edit]) -> Line:
-    """Return ``line`` after the edits. At each place only the first edit counts."""
+    """Return ``line`` after the edits. If several edits have the same offset, apply only the first."""
     assert line.whole.all(), "edits are tracked only for a stream that is still undamaged"
     first = {edit.place: edit for edit in reversed(edits)}
     edits = [first[place] for place in sorted(first)]

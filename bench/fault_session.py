@@ -13,7 +13,7 @@ from field_notes.play import OPENERS, Outcome, called
 POWERED = Call("is_power_on", (), 1)
 COORDS = Call("get_coords", (), COORDS_READ)
 REGISTER = Call("get_servo_data", (1, 24, 1), REGISTER_READ)
-# These return nothing; each is right if its bytes arrive exactly as often as it is called.
+# Setters return nothing; a call is right if its bytes arrive exactly once.
 ONE_WAY = (
     Call("power_on", (), DONE, bytes.fromhex("FE FE 02 10 FA")),
     Call("set_color", (1, 2, 3), DONE, bytes.fromhex("FE FE 05 6A 01 02 03 FA")),
@@ -32,7 +32,7 @@ SESSION = (
 )
 
 
-# Our client, which waits for the acknowledgement of each one-way request.
+# Our client, when it waits for the acknowledgement of each setter.
 CAREFUL = "careful"
 
 

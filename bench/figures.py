@@ -25,7 +25,7 @@ LINES, FAULTS = "bad-lines.md", "fault-scenarios.md"
 
 
 class Counted(NamedTuple):
-    """A row of the comparison: the outcomes of a page that it adds up."""
+    """A row of the comparison, and the outcomes on a page whose counts it sums."""
 
     label: str
     page: str

@@ -1,8 +1,8 @@
 """Poll 500 arms at 20 Hz in one process, then 1,000: lateness, CPU time and memory.
 
 The arms are TCP connections to the process of `asyncio_calls.py`, which compares a call with bare
-asyncio. A sample is late by the time from the beginning of its period until the consumer has it. On
-Linux, one core is the client's and another the arms'. The CPU time is measured in the client's
+asyncio. The lateness of a sample is the time from the beginning of its period until the consumer
+has it. On Linux, the client and the arms run on one core each. The CPU time is measured in the client's
 process. Memory is the growth of the process for each open arm with a stream, and the allocations of
 Python for it (tracemalloc, measured with few arms).
 """

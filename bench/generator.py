@@ -36,7 +36,7 @@ def _seconds(words: list[str]) -> float:
 
 
 def _big() -> str:
-    """Return a protocol of 400 commands; ids repeat, with other lengths."""
+    """Return a protocol of 400 commands; those that share an id differ in length."""
     head = (ROOT / "tests/codegen/lamp.yaml").read_text().partition("commands:\n")[0]
     commands, vectors = [], []
     for index in range(400):

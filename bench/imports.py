@@ -7,7 +7,8 @@ a second row imports the client.
 A program imports a client and opens it, so both together have one limit. With the layer that has
 the maker's names, both together may take 1.3 times as long.
 
-The size has a limit for each edition, since editions are added, and one for all else.
+The installed size has two limits: one for the average edition, since editions are added, and one for
+the rest of the package.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ STARTS: dict[str, tuple[str, float | None]] = {
     # Rows without a limit.
     THE_LAYER: (OPEN_LAYER, None),
     "import and open an asyncio client": (OPEN_ASYNC, None),
-    # Parts of the time that imports take.
+    # Modules of the standard library and click, which take part of the time of our imports.
     "import typing": ("import typing", None),
     "import typing, dataclasses": ("import typing, dataclasses", None),
     "import typing, logging": ("import typing, logging", None),

@@ -84,7 +84,7 @@ def lost_by_kind(rows: Rows) -> Figure:
 
 
 def recovery(rows: Rows) -> Figure:
-    """Plot how many bytes after a damage the next undamaged frame is read."""
+    """Plot how many bytes after damage a reader finds the next undamaged frame."""
     figure, axes = _canvas("All kinds of damage, one in a hundred bytes, all streams")
     mixed = _some(rows, kind="mixed")
     some = _some(mixed, rate=max(row["rate"] for row in mixed))

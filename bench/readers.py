@@ -57,7 +57,7 @@ def accepted(events: list[Event]) -> list[Accepted]:
 def textbook(table: Table) -> Reader:
     """Return a reader that consumes bytes on failure, as state machines in textbooks do.
 
-    pymavlink, for example, skips all bytes that a header claims before it checks the checksum. This
+    pymavlink, for example, skips the length that a header states before it checks the checksum. This
     reader expects header, header, LEN between 2 and the longest, LEN bytes, FA. If a byte does not
     fit, all bytes so far are lost, and the next byte begins the next attempt. Like pymycobot, it
     ignores ids.
@@ -104,9 +104,9 @@ def pymycobot() -> Reader:
     """Return ``_read`` of pymycobot's MyCobot280 as a reader: called until the line ends.
 
     This is its best case: no reply is dropped because another one is expected. Its port is in
-    memory and returns one byte per call, as its code requests. Its clock advances by one byte at
-    115200 baud with each call, so that its 0.5 s are over after 5,760 bytes without a frame. A
-    frame counts as read if ``_read`` returns its bytes right after its last byte.
+    memory and returns one byte per call, as its code requests. Each call advances its clock by the
+    time of one byte at 115200 baud, so its timeout of 0.5 s passes after 5,760 bytes without a
+    frame. A frame counts as read if ``_read`` returns it directly after its last byte.
     """
     common, peer = pymycobot_peer()
 
@@ -141,7 +141,7 @@ def pymycobot_by_request(line: Line) -> list[Accepted]:
     begins = [0, *line.ends.tolist()]
     for begin, start, end in zip(begins, line.starts.tolist(), line.ends.tolist()):
         window = iter([line.data[at : at + 1] for at in range(begin, end)])
-        # Nothing follows the reply, and pymycobot's 0.5 s pass.
+        # Nothing follows the reply, so pymycobot's timeout of 0.5 s passes.
         times = itertools.chain(itertools.repeat(0.0, end - begin + 1), itertools.repeat(1.0))
         peer._serial_port = SimpleNamespace(read=partial(next, window, b""))
         with mock.patch.object(common, "time", SimpleNamespace(time=times.__next__)):

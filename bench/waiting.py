@@ -1,8 +1,8 @@
 """Measure how soon a client notices that a motion has ended, and how many queries that takes.
 
 A simulated arm on a pty sends its replies at 115,200 baud, a few milliseconds after each request.
-The delay starts when the arm is near enough to its target to report that it has reached it. For an
-arm that reports the end of its motions, it starts when the arm is at rest.
+The delay starts when the arm is so near its target that it reports that the target is reached. For
+an arm that reports the end of its motions, the delay starts when the arm is at rest.
 """
 
 from __future__ import annotations

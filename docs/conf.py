@@ -44,7 +44,7 @@ myst_heading_anchors = 4
 myst_enable_extensions = ["colon_fence", "deflist"]
 
 autodoc_typehints = "description"
-# Otherwise each setter lists "ack_within", which its class describes, and the return type None.
+# Otherwise the page of each setter lists "ack_within", which its class describes, and the return type None.
 autodoc_typehints_description_target = "documented"
 autodoc_member_order = "bysource"
 autodoc_class_signature = "mixed"
@@ -78,7 +78,7 @@ html_search_scorer = str(Path(__file__).with_name("search_order.js"))
 # Each page links to its source in the repository.
 html_copy_source = False
 
-# The former addresses of pages that moved.
+# The former address of each page that moved, and its new one.
 MOVED = {"exchange": "contribute/exchange", "attack": "contribute/attack"}
 
 

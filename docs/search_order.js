@@ -32,7 +32,7 @@ const Order = {
     return folder + best;
   },
 
-  /* Return how well words fit the query; words that only others have count less. */
+  /* Return how well words fit the query: the more further words there are, the lower. */
   fit: (own, ...others) => {
     const query = [...Order.query];
     const mine = query.filter((word) => own.has(word)).length;
@@ -53,7 +53,7 @@ const Order = {
     return (Order._query ??= words().difference(new Set(["arm"])));
   },
 
-  /* The sections of each page. The section of a command has its effect, and more if it has a role. */
+  /* The sections of each page. That of a command states what the command does, and whether the command has a role. */
   get sections() {
     if (Order._sections) return Order._sections;
     const commands = new Map();

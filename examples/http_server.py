@@ -5,7 +5,7 @@
     curl -X POST localhost:8080/stop                  stop the arm, also during a motion
 
 It listens only on this machine and needs no password: every program on this machine can move the
-arm. One task serves each connection, and all of them share one client, which sends `stop` at once.
+arm. Each connection has a task of its own. All tasks share one client, which sends `stop` at once.
 """
 
 import asyncio

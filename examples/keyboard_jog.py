@@ -42,7 +42,7 @@ def main(port: str) -> None:
 
 
 def press(arm: MyCobot280, joint: int, key: str) -> None:
-    """Do what a key means. A refused step is an error, and nothing is sent."""
+    """Do what a key means. A step beyond a limit raises an error, and nothing is sent."""
     match key:
         case "+" | "-":
             step = STEP if key == "+" else -STEP

@@ -13,7 +13,7 @@ HOME = [0, 0, 0, 0, 0, 0]
 LIGHT = [60, -20, -40, 0, 0, 0]
 HEAVY = [-60, -20, -40, 0, 0, 0]
 LIMIT = 100  # grams
-MOST = 250  # grams that the arm carries
+MOST = 250  # grams that the arm can carry
 OPENING_SECONDS = 2.0
 
 

@@ -25,7 +25,7 @@ ATTEMPTS, MOST_NAMED = 3, 8
 
 
 class _Open(Exception):
-    """The next query has no outcome yet; the argument is its node."""
+    """Raised when a query has no outcome yet; the argument is the node of that query."""
 
 
 def trees() -> list[dict[str, Any]]:
@@ -90,7 +90,7 @@ def _remaining(among: Sequence[str], outcomes: Sequence[Evidence]) -> tuple[str,
 
 
 def _limits(node: dict[str, Any], silent: dict[str, Any]) -> list[float]:
-    """Return the limits that the remaining editions state; ``silent`` leads to their leaf."""
+    """Return the limits that the remaining editions state; after silence, ``silent`` follows."""
     while "editions" not in silent:
         silent = silent["silent"]
     end, joint = LIMIT_QUERIES.index(node["query"]), node["given"]["joint"]

@@ -88,7 +88,7 @@ def _readiness(table: Table, role: Role) -> dict[str, Any]:
     def text(raw: int) -> str:
         stated: Any = raw
         if role == "powered" and raw > 1:
-            # A stand-in for the enum's member, which counts as false.
+            # A stand-in for a member of an enum: it is false in a condition.
             stated = type("State", (str,), {"__bool__": lambda _: False})()
             stated.name = field.labels[field.choices.index(raw)]
         found = [f"{each.text}; {each.advice}" for each in problems(table, {role: stated}, "")]
@@ -117,12 +117,12 @@ def record_example(path: Path) -> None:
 
 
 def missing() -> str:
-    """Return what the page needs but is missing; empty without one."""
+    """Return what the page needs and is missing; empty if nothing is missing."""
     return npm_package.missing() or ("" if CURVES.is_file() else "needs uPlot: make front-end")
 
 
 def build(folder: Path, found: Callable[[], list[Model]]) -> None:
-    """Write the page, or what is missing; ``found`` returns the checked editions."""
+    """Write the page, or a note that says what is missing; ``found`` returns the checked editions."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     if needs := missing():

@@ -37,7 +37,7 @@ SEARCHES = {
 
 
 class Ended(NamedTuple):
-    """A search that ended: its exit code, minutes of time and of processor time, last line."""
+    """A search that ended: its exit code, its minutes of time and of processor time, its last line of output."""
 
     search: str
     code: int

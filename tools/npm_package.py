@@ -4,7 +4,7 @@
     python tools/npm_package.py --build    # only build it, and the module of the decoder page
 
 The program of the docs runs against ``cobotwire sim``. A module for a protocol with hostile texts
-is type-checked and loaded. If something fails, it prints that, and exits with 1.
+is type-checked and loaded. If something fails, this script prints it, and exits with 1.
 """
 
 # ruff: noqa: S603  (node, npm, cargo and our own programs are started)

@@ -3,7 +3,7 @@
     make release-check                 # compare with the last release
     make release-check SINCE=HEAD~9    # compare with a revision, as if it were the last release
 
-docs/compatibility.md says what a release promises, a row for each entry of ``PROMISES``. The exit
+docs/compatibility.md says what a release promises, in one row for each entry of ``PROMISES``. The exit
 code is 1 if this tree's version (Cargo.toml) is too low for the differences.
 """
 
@@ -41,7 +41,7 @@ from release import VERSION as NUMBER
 
 COMPARED = ("Cargo.toml", "docs", "python", "spec", "tests/capture")
 BUMPS = ("major", "minor", "patch", "none")
-# Prints the verbs with their options, and the exit codes.
+# Prints the subcommands with their options, and the exit codes.
 COMMAND_LINE = """
 import click, json
 from cobotwire.cli.app import app
@@ -49,7 +49,7 @@ from cobotwire.cli.shared.exit_codes import CODES
 def words(command, path):
     yield from (f"{path} {word}" for each in command.params for word in each.opts)
     context = click.Context(command)
-    # The list leaves out verbs that cannot run here, such as studio without its JavaScript.
+    # The list leaves out subcommands that cannot run here, such as studio without its JavaScript.
     listed = command.list_commands(context) if isinstance(command, click.Group) else ()
     for name in {*listed, *getattr(command, "verbs", ())}:
         yield f"{path} {name}"
@@ -125,7 +125,7 @@ def python_api(old: Path, new: Path) -> Iterator[Finding]:
         raise Failed(f"the last release promises names that it lacks: {sorted(missing)}")
     for broken in griffe.find_breaking_changes(before, after):
         yield _finding("api", broken.kind.name.lower().replace("_", "-"), _place_of(broken))
-    # In the other direction, a removed object is one that was added.
+    # Comparing in the other direction reports additions as removals.
     for added in griffe.find_breaking_changes(after, before):
         if added.kind is griffe.BreakageKind.OBJECT_REMOVED:
             yield _finding("addition", "object-added", _place_of(added))
@@ -138,7 +138,7 @@ def _place_of(broken: griffe.Breakage) -> str:
 
 
 def command_line(old: Path, new: Path) -> Iterator[Finding]:
-    """Compare verbs, options and exit codes."""
+    """Compare subcommands, options and exit codes."""
     before, after = _words_of(old), _words_of(new)
     yield from (_finding("api", "word-removed", word) for word in sorted(before - after))
     yield from (_finding("addition", "word-added", word) for word in sorted(after - before))
@@ -222,7 +222,7 @@ def last_release(tags: Iterable[str], current: str) -> str | None:
 
 
 def _parts(number: str) -> tuple[int, ...]:
-    # Pre-releases promise what their release does.
+    # A pre-release promises the same as its release.
     return tuple(map(int, re.findall(r"\d+", number)[:3]))
 
 

@@ -3,7 +3,7 @@
     python tools/release.py                # check this tree; print what is left to do
     python tools/release.py --build        # also build and check the distributions
     python tools/release.py --changelog    # move the fragments of news/ into CHANGELOG.md
-    python tools/release.py --tag v0.1.0   # in the release workflow: the tag fits the tree
+    python tools/release.py --tag v0.1.0   # in the release workflow: also check that the tag fits
     python tools/release.py --notes        # print the changelog's section of the version
 
 Pushing a tag starts .github/workflows/release.yml, which builds, waits for a maintainer's approval,

@@ -2,7 +2,7 @@
 
 The program of the README runs against ``cobotwire sim``. A program with the generated module of a
 protocol that has hostile texts compiles. Every feature compiles alone, and all together; the
-documentation has no warning. If something fails, this script prints that, and exits with 1.
+documentation has no warning. If something fails, this script prints it, and exits with 1.
 """
 
 # ruff: noqa: S603  (cargo and our own programs are started)

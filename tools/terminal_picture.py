@@ -63,7 +63,7 @@ def _row(screen: pyte.Screen, line: int) -> Row:
 
 
 class Film(NamedTuple):
-    """The screens of a terminal, one a frame, drawn with cells of ``width`` by ``height``."""
+    """The screens of a terminal, one per frame, drawn with cells of ``width`` by ``height``."""
 
     screens: Sequence[Screen]
     width: float

@@ -76,7 +76,7 @@ def _failures(python: str, built: Path, folder: Path) -> list[str]:
     subprocess.run([python, "-m", "venv", str(folder)], check=True)  # noqa: S603
     here = folder / "bin" / "python"
     kept = {name: value for name, value in os.environ.items() if name in ("HOME", "LANG")}
-    # pip finds the wheels for what the pages install by name.
+    # The pages run `pip install cobotwire`; with these settings pip finds our wheels.
     environment = {
         **kept,
         "PATH": f"{here.parent}:{SYSTEM}",

@@ -28,8 +28,8 @@ SECONDS = 300
 class Protocol(NamedTuple):
     """A protocol, and calls of it: a line for the command line, the same in Python, and the output.
 
-    ``to`` is the address of the device; empty if frames have none. ``names_replies`` is whether a
-    reply names its command.
+    ``to`` is the address of the device; empty if frames have none. ``names_replies`` says whether
+    replies contain the id of their command.
     """
 
     name: str
@@ -167,7 +167,7 @@ def _frames(protocol: Protocol, spec: Path) -> Iterator[tuple[str, str]]:
 
 
 def _write_client(protocol: Protocol, folder: Path) -> None:
-    """Write a program that makes the calls, and the same calls for the referee."""
+    """Write a program that makes the calls, and a file with the same calls for the client tester."""
     address = f", address={protocol.to}" if protocol.to else ""
     calls = "\n    device.".join(call for _, call, _ in protocol.calls)
     text = CLIENT.format(name=protocol.name, address=address, calls=calls)

@@ -157,7 +157,7 @@ export class Live extends Session {
     return results.length > 1 ? results : (results[0] ?? null);
   }
 
-  // Query states of the arm; throw if it does not obey. After one reply, a query without a reply is ignored.
+  // Query the states of the arm; throw if it would not obey. Once one query had a reply, ignore those without one.
   async check(arm, queries, replied, how) {
     const problems = [];
     for (const { command, field, texts, usual } of queries) {

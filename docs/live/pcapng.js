@@ -5,7 +5,7 @@ const [MAGIC, LINK_TYPE, NANOSECONDS] = [0x1a2b3c4d, 159, 9];
 const FLAGS = { unknown: 0, received: 1, sent: 2 };
 const text = (value) => new TextEncoder().encode(value);
 
-// Writing this many entries takes a few milliseconds; after each batch the worker does what must not wait.
+// Writing this many entries takes a few milliseconds; after each batch the worker handles urgent messages, such as Stop.
 const AT_ONCE = 500;
 
 function turn() {

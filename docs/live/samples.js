@@ -1,7 +1,7 @@
 // What curves and arm show: joints, coordinates, targets, reply times and noise, as studio/samples.py says.
 
 const LONGEST_REPLY_SECONDS = 5;
-// An arm that is as near as this to its target has reached it.
+// An arm that is at most this far from its target has reached it.
 const [REACHED_DEGREES, REACHED_MILLIMETRES] = [0.5, 1];
 
 export class Sampler {

@@ -26,7 +26,7 @@ export class Stream {
     return this.entries(this.decoder.feed(data));
   }
 
-  // Return the entries that remain, since nothing follows.
+  // Return the entries of the bytes that are left; call this when no more bytes follow.
   silence() {
     return this.entries(this.decoder.flush());
   }
@@ -51,7 +51,7 @@ export class Session {
     Object.assign(this, { publish, facts, streams, port, entries: [], dropped: 0, sampler: new Sampler(facts) });
   }
 
-  // Add what a function returns. A fault of the display must not keep bytes from the arm, or from its replies.
+  // Add the entries that a function returns. An error here must not stop the traffic with the arm.
   note(entries) {
     try {
       this.add(entries());
@@ -127,7 +127,7 @@ export class Session {
     const numbered = (n = Infinity) => n >= Number(first) && (n < Number(last) || last === Infinity);
     const inside = ({ n, t, d, data }) => data && numbered(n) && t >= from && t < to && (!direction || d === direction);
     const chosen = (entry) => inside(entry) && (!command || this.read(entry)?.command === command);
-    // A copy, since entries come and go meanwhile.
+    // A copy, since entries are added and dropped meanwhile.
     const entries = [...this.entries, ...this.streams.flatMap((stream) => stream.begun())];
     return written(entries, chosen, { ...this.port, edition: this.facts.robot.edition, startNs: this.startNs });
   }

@@ -119,7 +119,7 @@ export class Source {
   choose() {
     return this.attempt("finding out which robot it is, with queries", async () => {
       if (self !== top) throw new Error("open this page on its own: inside another page it connects no arm");
-      // To forget a port takes it from every page of this site.
+      // forget() below takes a port away from every page of this site, so no other page may use an arm.
       if (!(await this.alone())) throw new Error("another page of this site uses an arm: disconnect it there first");
       try {
         const port = await navigator.serial.requestPort();
@@ -199,7 +199,7 @@ export class Source {
   }
 }
 
-// The worker has methods of these names.
+// Each of these methods calls the method of the worker with the same name.
 for (const name of ["commands", "explain", "preview", "send", "control", "allowMotion", "stop"]) {
   Source.prototype[name] = function (...values) {
     return this.ask(name, ...values);

@@ -17,7 +17,7 @@ from cobotwire.protocol.table import Command, Table
 
 # The position of a gripper is its opening in percent.
 GRIPPER, OPENINGS = "gripper.pos", (0.0, 100.0)
-# For each use, whether a command has the effect that it needs.
+# For each use, a function that returns whether a command has the effect that the use needs.
 _USES: dict[str, Callable[[Effect | None], bool]] = {
     "read gripper": lambda e: isinstance(e, Reports) and [*e.values.values()] == ["opening"],
     "move gripper": lambda e: isinstance(e, Moves) and e.part == "gripper" and type(e.to) is str,
