@@ -1,4 +1,4 @@
-"""Run a session of pymycobot 4.0.7 and of our clients against the client tester; print the failures.
+"""Run a session of pymycobot 4.0.7 and of our clients with the client tester; print failures.
 
 .venv/bin/python bench/client_findings.py                 # all clients, all lines
 .venv/bin/python bench/client_findings.py --only cobotwire

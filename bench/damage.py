@@ -82,7 +82,7 @@ def noisy(
 
 
 def apply(line: Line, edits: list[Edit]) -> Line:
-    """Return ``line`` after the edits. If several edits have the same offset, apply only the first."""
+    """Return ``line`` after the edits; of several edits at one offset, apply only the first."""
     assert line.whole.all(), "edits are tracked only for a stream that is still undamaged"
     first = {edit.place: edit for edit in reversed(edits)}
     edits = [first[place] for place in sorted(first)]

@@ -2,9 +2,9 @@
 
 The arms are TCP connections to the process of `asyncio_calls.py`, which compares a call with bare
 asyncio. The lateness of a sample is the time from the beginning of its period until the consumer
-has it. On Linux, the client and the arms run on one core each. The CPU time is measured in the client's
-process. Memory is the growth of the process for each open arm with a stream, and the allocations of
-Python for it (tracemalloc, measured with few arms).
+has it. On Linux, the client and the arms run on one core each. The CPU time is measured in the
+client's process. Memory is the growth of the process for each open arm with a stream, and the
+allocations of Python for it (tracemalloc, measured with few arms).
 """
 
 from __future__ import annotations

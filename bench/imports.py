@@ -7,8 +7,8 @@ a second row imports the client.
 A program imports a client and opens it, so both together have one limit. With the layer that has
 the maker's names, both together may take 1.3 times as long.
 
-The installed size has two limits: one for the average edition, since editions are added, and one for
-the rest of the package.
+The installed size has two limits: one for the average edition, since editions are added, and one
+for the rest of the package.
 """
 
 from __future__ import annotations

@@ -57,10 +57,10 @@ def accepted(events: list[Event]) -> list[Accepted]:
 def textbook(table: Table) -> Reader:
     """Return a reader that consumes bytes on failure, as state machines in textbooks do.
 
-    pymavlink, for example, skips the length that a header states before it checks the checksum. This
-    reader expects header, header, LEN between 2 and the longest, LEN bytes, FA. If a byte does not
-    fit, all bytes so far are lost, and the next byte begins the next attempt. Like pymycobot, it
-    ignores ids.
+    pymavlink, for example, skips the length that a header states before it checks the checksum.
+    This reader expects header, header, LEN between 2 and the longest, LEN bytes, FA. If a byte does
+    not fit, all bytes so far are lost, and the next byte begins the next attempt. Like pymycobot,
+    it ignores ids.
     """
     longest = table.frame.maximum_length
 

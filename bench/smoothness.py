@@ -4,9 +4,9 @@
 
 The arm moves in stepped time; the speeds of its joints are computed every 5 ms. A loop of
 ``move_angles`` waits at each point; ``send_angles`` without waiting fills the arm's queue;
-``follow`` sends setpoints. The lowest share shows how far the arm fell below the commanded speed: it
-is the least ratio of a speed to the lowest speed commanded in the 0.3 s before. Only the middle of
-the path counts, from the first to the last command of at least 80 % of the highest speed.
+``follow`` sends setpoints. The lowest share shows how far the arm fell below the commanded speed:
+it is the least ratio of a speed to the lowest speed commanded in the 0.3 s before. Only the middle
+of the path counts, from the first to the last command of at least 80 % of the highest speed.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Compare the native codec with other programs, on the same input in the same run.
 
 Each round runs each program once; a ratio is the median over the rounds. Bulk work is measured on a
-large input, as captures are, and on a small one. An input is large if it has eight times the size of
-the last-level cache; the first line of output compares the two sizes.
+large input, as captures are, and on a small one. An input is large if it has eight times the size
+of the last-level cache; the first line of output compares the two sizes.
 """
 
 from __future__ import annotations

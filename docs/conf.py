@@ -44,7 +44,7 @@ myst_heading_anchors = 4
 myst_enable_extensions = ["colon_fence", "deflist"]
 
 autodoc_typehints = "description"
-# Otherwise the page of each setter lists "ack_within", which its class describes, and the return type None.
+# Otherwise each setter lists "ack_within", which the class describes, and the return type None.
 autodoc_typehints_description_target = "documented"
 autodoc_member_order = "bysource"
 autodoc_class_signature = "mixed"

@@ -31,7 +31,7 @@ def picture(edition: str) -> str:
     across, down = zip(*at_zero, *bent, *rings[-1])
     corner = min(across) - MARGIN, min(down) - MARGIN
     size = max(across) - corner[0] + MARGIN, max(down) - corner[1] + MARGIN
-    # Put labels to the right and left alternately, since the axes of two joints may meet in a point.
+    # Put labels alternately to the right and left, since the axes of two joints may meet.
     joints = "".join(
         f'<circle cx="{x:.1f}" cy="{y:.1f}" r="7"/>'
         f'<text x="{x + (14 if n % 2 else -30):.1f}" y="{y + 6:.1f}">j{n}</text>'

@@ -122,7 +122,7 @@ def missing() -> str:
 
 
 def build(folder: Path, found: Callable[[], list[Model]]) -> None:
-    """Write the page, or a note that says what is missing; ``found`` returns the checked editions."""
+    """Write the page, or a note of what is missing; ``found`` returns the checked editions."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     if needs := missing():

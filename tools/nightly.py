@@ -37,7 +37,7 @@ SEARCHES = {
 
 
 class Ended(NamedTuple):
-    """A search that ended: its exit code, its minutes of time and of processor time, its last line of output."""
+    """A search that ended: exit code, minutes, minutes of processor time, last line of output."""
 
     search: str
     code: int

@@ -3,8 +3,8 @@
     make release-check                 # compare with the last release
     make release-check SINCE=HEAD~9    # compare with a revision, as if it were the last release
 
-docs/compatibility.md says what a release promises, in one row for each entry of ``PROMISES``. The exit
-code is 1 if this tree's version (Cargo.toml) is too low for the differences.
+docs/compatibility.md says what a release promises, in one row for each entry of ``PROMISES``. The
+exit code is 1 if this tree's version (Cargo.toml) is too low for the differences.
 """
 
 from __future__ import annotations

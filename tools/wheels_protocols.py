@@ -167,7 +167,7 @@ def _frames(protocol: Protocol, spec: Path) -> Iterator[tuple[str, str]]:
 
 
 def _write_client(protocol: Protocol, folder: Path) -> None:
-    """Write a program that makes the calls, and a file with the same calls for the client tester."""
+    """Write a program that makes the calls, and a file of the same calls for the client tester."""
     address = f", address={protocol.to}" if protocol.to else ""
     calls = "\n    device.".join(call for _, call, _ in protocol.calls)
     text = CLIENT.format(name=protocol.name, address=address, calls=calls)
