@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="300fef35")
+TABLE = load_table(__package__, checksum="f7c097c1")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="68b4f591")
+TABLE = load_table(__package__, checksum="5641c75a")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="49ba9b6d")
+TABLE = load_table(__package__, checksum="99e43f35")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="e45fcfca")
+TABLE = load_table(__package__, checksum="ff0453f5")

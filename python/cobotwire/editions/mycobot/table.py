@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="8b0e19b0")
+TABLE = load_table(__package__, checksum="96a02528")

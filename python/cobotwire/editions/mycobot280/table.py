@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="188000bc")
+TABLE = load_table(__package__, checksum="54466059")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="058d5898")
+TABLE = load_table(__package__, checksum="ae3aad5b")

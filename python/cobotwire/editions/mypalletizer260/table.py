@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="1c40ec6a")
+TABLE = load_table(__package__, checksum="f8e7d49b")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="a227cf14")
+TABLE = load_table(__package__, checksum="cc536424")

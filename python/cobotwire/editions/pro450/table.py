@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="d56b674b")
+TABLE = load_table(__package__, checksum="6b88060c")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="09db57ee")
+TABLE = load_table(__package__, checksum="e4d76c5e")

@@ -26,7 +26,7 @@ class PowerCommands(Client):
         """Switch a brake.
 
         Switches the brake of a joint on or off. No source says whether a brake that is on holds its
-        joint or releases it; support the arm before either.
+        joint or releases it; support the arm before you switch a brake on or off.
 
         Args:
             joint: Joint number; 1 to 7 are the arm, 11 and 12 head and neck, 13 the waist (one of

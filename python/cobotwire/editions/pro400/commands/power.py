@@ -25,7 +25,7 @@ class PowerCommands(Client):
         """Switch a brake.
 
         Switches the brake of a joint on or off. No source says whether a brake that is on holds its
-        joint or releases it; support the arm before either.
+        joint or releases it; support the arm before you switch a brake on or off.
 
         Args:
             joint: Joint number; 1 is the base, 6 the flange (1..6).
