@@ -1,8 +1,8 @@
 """Measure the time of a call over a pty, with a trivial responder in another process.
 
 The floor is the time of bare system calls for the same bytes: os.write, select, os.read. Each call
-is followed by a call of the floor on the same responder, so that both find caches and processor in
-the same state. On some machines the time of the floor varies by a factor of four, which is more
+is followed by these bare system calls on the same responder, so that both find caches and processor
+in the same state. On some machines the time of the floor varies by a factor of four, which is more
 than the time of the client. Candidates take turns. The fastest quarter of each candidate's turns
 counts, since other programs on the machine can only add time. The limits apply to the median of
 their ratios.
@@ -81,7 +81,7 @@ def _simulated() -> Iterator[str]:
 
 @dataclass(frozen=True)
 class Turn:
-    """The mean seconds of a call, and of the call of the floor after it."""
+    """The mean seconds of a call, and of the bare system calls after it."""
 
     call: float
     floor: float

@@ -44,7 +44,10 @@ COUNTED = (
     ),
     Counted("… of these: a wrong value", LINES, ("wrong, silently",)),
     Counted(
-        "720 calls, with each of 39 faults and with none: right", FAULTS, ("right",), in_readme=True
+        "720 calls, 18 with each of 39 faults and 18 without: right",
+        FAULTS,
+        ("right",),
+        in_readme=True,
     ),
     Counted("… an error that says what happened", FAULTS, ("honest error",)),
     Counted("… -1 or None instead of an error", FAULTS, ("-1 or None",)),

@@ -30,7 +30,7 @@ from scoring import as_json, ideal_distances, score, spread
 from streams import Line
 
 TABLES = {table.edition: table for table in (TABLE, TABLE_280)}
-# The factor of the length of a line, by the rate of damage: rare damage needs longer lines.
+# How many times as long a line is, by the rate of damage: rare damage needs longer lines.
 LENGTHS = {1e-4: 2.0, 1e-3: 1.0, 1e-2: 0.5}
 BYTE_BY_BYTE = 100_000
 

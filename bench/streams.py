@@ -1,7 +1,8 @@
 """Make byte streams from an edition's table, with the ground truth about every frame in them.
 
 ``frames_alike`` builds many frames of one variant at once, with random legal values. It uses NumPy
-and no codec, so that no codec is validated by its own stream. The same seed gives the same stream.
+and no codec, so that no codec is tested with a stream that it encoded itself. The same seed gives
+the same stream.
 """
 
 from __future__ import annotations

@@ -46,7 +46,7 @@ def test_numbers_of_runs_and_calls_are_the_sums_of_the_measured_pages() -> None:
     assert (on_lines, with_faults, faults) == ((86, 86), (720, 720), 39)
     labels = [row.label for row in figures.COUNTED]
     assert labels[0].startswith("86 runs")
-    assert "720 calls, with each of 39 faults and with none: right" in labels
+    assert "720 calls, 18 with each of 39 faults and 18 without: right" in labels
 
 
 def test_links_of_the_readme_lead_to_files_of_the_repository() -> None:
