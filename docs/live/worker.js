@@ -31,7 +31,7 @@ function begin(opened, hello) {
   session = opened;
 }
 
-// The requests and messages of the page; the session has the other methods.
+// Handle the requests and messages of the page. Those that have no method here call a method of the session.
 const requests = {
   // Connect to the port at an index; `infos` describes all ports, so that a change of their list is noticed.
   async connect({ name, speed, at, infos }) {

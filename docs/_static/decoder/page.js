@@ -19,7 +19,7 @@
   // A longer input is not kept in the address, which browsers limit.
   const LONGEST_LINK = 16384;
 
-  // The worker: it parses, cuts and reads, and sends the events in portions. It runs in a thread of
+  // The worker: it parses the input, cuts it into frames, decodes them, and sends the events in portions. It runs in a thread of
   // its own, so the page stays responsive however long the input is. The source of `Decoder` is put before this
   // function.
   function work() {

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="27fa0d35")
+TABLE = load_table(__package__, checksum="d172e43d")
