@@ -1,4 +1,4 @@
-// Compare a call over TCP with a bare round trip of the same bytes, in turns in one run.
+// Compare a call over TCP with a bare round trip of the same bytes; one run alternates between both.
 import { once } from "node:events";
 import { connect } from "node:net";
 import { Worker, isMainThread, parentPort } from "node:worker_threads";

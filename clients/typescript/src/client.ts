@@ -6,15 +6,15 @@ import { edition, machine, objectOf, type Value } from "./machine.js";
 import { nameOf, openWebSerial, reason, type Transport, type WebSerialPort } from "./transport.js";
 import { inNode, node } from "./wasm.js";
 
-/** Where an arm is: `/dev/ttyACM0` or `socket://host:port` in Node, a port of the browser, a transport. */
+/** Where an arm is: `/dev/ttyACM0` or `socket://host:port` (in Node), a browser's serial port, or a transport. */
 export type Port = string | WebSerialPort | Transport;
 
-/** The lowest and the highest value. */
+/** The lowest and the highest value; `undefined`: no limit. */
 export type Range = readonly [number, number] | undefined;
 
 /** The options of a client; times are in seconds. */
 export interface Options {
-  /** How long the arm has to reply once a request is sent; default: as the edition says. */
+  /** How long the arm has to reply once a request is sent; default: the timeout of the edition. */
   timeout?: number;
   /** How long a call may take, waiting for its turn included; default: no limit. */
   deadline?: number;
@@ -30,16 +30,16 @@ export interface Options {
   onError?: "stop" | "leave";
 }
 
-/** The result of a query, and when its request was sent and its reply came: `performance.now()`. */
+/** The result of a query, and the times (`performance.now()`) of its request and its reply. */
 export interface Sample<T> {
   value: T;
   requestedAt: number;
   repliedAt: number;
 }
 
-/** The fields of a message by the names that they have in a method: one of them, or an object. */
+/** What a method returns: one field, or an object whose keys are mapped to fields; `undefined`: nothing. */
 type Result = string | Record<string, string> | undefined;
-/** A command: its name, arguments and result, and which of these are in radians, or true or false. */
+/** A command: its name, arguments and result, and which of them are in radians, and which are booleans. */
 type Row = [command: string, names?: string[], result?: Result, radians?: string[], flags?: string[]];
 interface Description {
   table: string;
@@ -49,13 +49,13 @@ interface Settings {
   address?: number;
   ackWithin?: number;
   signal?: AbortSignal;
-  /** The times of the last reply; only queries are sent, once. */
+  /** The times of a stream's last sample. If this is set, only queries are sent, each once. */
   sampled?: { requestedAt: number; repliedAt: number };
 }
 type Class<T> = new (line: Line, description: Description) => T;
 
 const descriptions = new WeakMap<object, Description>();
-/** Make the methods of an edition's client. */
+/** Add a method for each command to an edition's client, and set its table and events. */
 export function describe(
   type: Class<Client>,
   table: string,
@@ -79,14 +79,14 @@ export function describe(
   }
 }
 
-/** Return a value with each number changed, in rows too. */
+/** Return a value with `change` applied to each number, also inside rows. */
 function mapped(value: Value, change: (number: number) => Value): Value {
   if (typeof value === "number") return change(value);
   if (typeof value !== "object" || value instanceof Uint8Array) return value;
   return Array.from(value, (each) => mapped(each, change));
 }
 
-/** Return the result of a method. */
+/** Return the result of a method, made from the fields of a reply. */
 function shaped(fields: Record<string, Value>, [, , result, radians, flags]: Row): unknown {
   const take = (name: string): Value => {
     if (flags?.includes(name)) return mapped(fields[name], (number) => number !== 0);
@@ -112,7 +112,9 @@ export class Client {
     options: Options = {},
   ): Promise<T> {
     const description = descriptions.get(this);
-    if (!description) throw new UsageError("import the client of an edition: cobotwire/mycobot280");
+    if (!description) {
+      throw new UsageError(`${this.name} has no edition; use the client of one: cobotwire/mycobot280`);
+    }
     const session = await machine();
     const [index, usual] = edition(session, description.table);
     const { timeout, deadline, retry, address, baudrate = usual, limits, onError } = options;
@@ -121,7 +123,7 @@ export class Client {
       ...[address?.toString(), limits?.speed, limits?.workspace, onError],
     ];
     const url = typeof port === "string" ? port : "start" in port ? port.url : nameOf(port);
-    // The session first: it reports what is not allowed before the port is opened.
+    // The session rejects bad options, so it is made before the port is opened.
     const id = session.ask<number>("open", index, url, ...given);
     let transport: Transport;
     try {
@@ -152,7 +154,7 @@ export class Client {
     }
   }
 
-  /** Close the port when what was written is sent. The arm is left as it is; calls end with an error. */
+  /** Send what was written, and close the port. The arm is not stopped; pending calls end with an error. */
   async close(): Promise<void> {
     await this.line.close();
   }
@@ -162,17 +164,17 @@ export class Client {
     await this.line.close(true);
   }
 
-  /** Return this client for another address, by its name or number. */
+  /** Return a client for another address, by its name or number; both share the connection. */
   at(address: string | number): this {
     return this.with({ address: this.line.ask<number>("address", address.toString()) });
   }
 
-  /** Return this client so that requests without a reply wait for their acknowledgement. */
+  /** Return a client on the same connection that waits for acknowledgements of one-way requests. */
   acknowledged(seconds: number): this {
     return this.with({ ackWithin: seconds });
   }
 
-  /** Return this client so that a signal ends its calls. A request that was not sent never will be. */
+  /** Return a client on the same connection: `signal` ends its calls, and unsent requests are never sent. */
   withSignal(signal: AbortSignal): this {
     return this.with({ signal });
   }
@@ -187,7 +189,7 @@ export class Client {
     return new Stream(() => query(arm), sampled, 1000 / rate);
   }
 
-  /** Receive the events of a name that come from now on, until none comes within `timeout` seconds. */
+  /** Receive the events with this name from now on, until none arrives within `timeout` seconds. */
   events(name: string, timeout = Infinity): EventStream<unknown> {
     const row = this.description.events[name];
     if (!row) throw new UsageError(`${this.constructor.name} has no event ${name}`);
@@ -237,7 +239,7 @@ async function opened(port: Port, url: string, baudrate: number): Promise<Transp
 
 /** The samples of a query; see `Client.stream`. */
 export class Stream<T> implements AsyncIterable<Sample<T>> {
-  /** How many periods had no sample: no reply came, or the loop came too late. */
+  /** The number of periods without a sample: no valid reply came, or the loop asked after the period. */
   missed = 0;
 
   constructor(
@@ -278,7 +280,7 @@ export class EventStream<T> implements AsyncIterable<T> {
     this.queue = line.ask<number>("subscribe", row[0]);
   }
 
-  /** How many events were dropped because too many waited: always the oldest. */
+  /** The number of events that were dropped, oldest first, because too many were queued. */
   get lost(): number {
     return this.ask<number>("lost");
   }

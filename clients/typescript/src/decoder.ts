@@ -24,7 +24,7 @@ export interface Found {
   noise: Reason | undefined;
 }
 
-/** A run of bytes inside a frame. If several parts are bits of one word, only the last of them lists the bytes. */
+/** Adjacent bytes of a frame. If bit fields share bytes, `size` is 0 for all of them but the last. */
 export interface Part {
   at: number;
   size: number;
@@ -35,15 +35,15 @@ export interface Part {
   raw: number | bigint | undefined;
 }
 
-/** What a frame says. */
+/** A decoded frame. */
 export interface Message {
   command: string;
   kind: "request" | "reply" | "event";
-  /** Its values, in the units of the edition. */
+  /** The values, in the units of the edition. */
   fields: Record<string, Value>;
-  /** Every byte of it, in order. */
+  /** The parts of the frame, in order; together they cover every byte. */
   parts: Part[];
-  /** What else the same bytes can be. */
+  /** Other messages that have the same bytes. */
   others: { command: string; kind: Message["kind"] }[];
 }
 
@@ -70,13 +70,13 @@ export class Decoder {
     private readonly listening: Listening,
   ) {}
 
-  /** Return a decoder at the start of a stream. The module of an edition has its `table`. */
+  /** Return a decoder for a new stream. The module of an edition exports its `table`. */
   static async load(table: string, listening: Listening = "both"): Promise<Decoder> {
     const session = await machine();
     return new Decoder(session, edition(session, table)[0], listening);
   }
 
-  /** Take bytes; return the frames, and the noise, that are certain now. Noise may come in pieces. */
+  /** Take bytes; return the frames and the noise that more bytes cannot change. Noise may be in pieces. */
   feed(data: Uint8Array): Found[] {
     const all = new Uint8Array(this.rest.length + data.length);
     all.set(this.rest);
@@ -89,12 +89,12 @@ export class Decoder {
     return this.rest;
   }
 
-  /** Note that the line is silent: bytes that could have begun a frame are noise. */
+  /** End the wait for more bytes: an incomplete frame becomes noise. */
   flush(): Found[] {
     return this.cut(this.rest, undefined);
   }
 
-  /** Return what a frame says. */
+  /** Decode a frame; return its message, or why the table rejects it. */
   read(frame: Uint8Array): Message | Rejection {
     const row = this.machine.ask<Row | [Rejection["reason"], number, string]>(
       ...["decode", this.edition, this.listening, frame, undefined],

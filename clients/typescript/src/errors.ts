@@ -1,4 +1,4 @@
-/** The errors: a class for each party that can be at fault, with the texts of the Python client. */
+/** The errors: a class for each party that can be at fault. Their texts are those of the Python client. */
 import type { Value } from "./machine.js";
 
 /** The base class of every error of cobotwire. */
@@ -38,7 +38,7 @@ export class LinkError extends CobotwireError {
 
 /** The reply, or the requested acknowledgement, did not arrive in time. */
 export class ReplyTimeout extends CobotwireError {
-  /** Seconds since the request was sent; since the call, if its deadline passed. */
+  /** Seconds since the request was sent, or since the call began if its deadline passed. */
   readonly waited: number;
   /** How often the request was sent; 0: it was not sent, and never will be. */
   readonly attempts: number;
@@ -53,7 +53,7 @@ export class ReplyTimeout extends CobotwireError {
   }
 }
 
-/** Return the error that the session describes by its name, its text, and what else it knows. */
+/** Return the error that the session reports: its class, its text, and the values of that class. */
 export function failure([name, text, ...rest]: readonly Value[]): CobotwireError {
   const message = text as string;
   switch (name) {

@@ -1,9 +1,9 @@
-/** What the handles of a client share: a session, and the transport that it uses. */
+/** A session and its transport, which clients share if one was made from the other (`at()`, ...). */
 import { LinkError, failure } from "./errors.js";
 import type { Machine, Value } from "./machine.js";
 import { reason, within, type Transport } from "./transport.js";
 
-/** The result of a step of the session: bytes to write, calls that have ended, when to continue. */
+/** The result of a step of the session: bytes to write, calls that ended, nanoseconds to the next step, a new call. */
 type Step = [
   bytes: Uint8Array | undefined,
   ended: [call: number, good: boolean, answer: readonly Value[]][],
@@ -15,16 +15,16 @@ interface Caller {
   failed(error: unknown): void;
 }
 
-/** A line that takes no bytes for this long is stuck. */
+/** A transport that takes no bytes for this long is stuck. */
 export const WRITE_SECONDS = 1;
 
-/** A port that was empty counts as empty for these milliseconds; a byte takes longer at 115,200 baud. */
+/** After a read found no more bytes, the port counts as empty for this time: a byte at 115,200 baud takes longer. */
 const EMPTY_MS = 0.05;
 
 /** Return a time of the session, in nanoseconds. */
 export const nanoseconds = (at = performance.now()): number => Math.round(at * 1e6);
 
-/** Run a function when everything that has come by now was received. */
+/** Run a function after the event loop has delivered all bytes that have arrived by now. */
 const afterTurn: (run: () => void) => void =
   typeof setImmediate === "function"
     ? // Node reads sockets between two turns of its loop.
@@ -42,7 +42,7 @@ export class Line {
   private wakesAt = Infinity;
   private reading = false;
   private emptyAt = -Infinity;
-  /** Whether everything that had come was read before the last step. */
+  /** Whether all bytes that had arrived were read before the last step. */
   private drained = false;
   private writing = false;
   private open = true;
@@ -62,12 +62,12 @@ export class Line {
     );
   }
 
-  /** Call a function of the session that is not a step. */
+  /** Call a function of the session by its name. */
   ask<T = Value>(what: string, ...rest: Value[]): T {
     return this.machine.ask<T>(what, this.id, ...rest);
   }
 
-  /** Send a request; return its answer: the fields of the reply, and when they were exchanged. */
+  /** Send a request; return the fields of its reply, and when request and reply were exchanged. */
   call(signal: AbortSignal | undefined, ...request: Value[]): Promise<readonly Value[]> {
     return new Promise((done, failed) => {
       signal?.throwIfAborted();
@@ -88,7 +88,7 @@ export class Line {
     });
   }
 
-  /** Wait until something was received, for some time at most; return false if the time is over. */
+  /** Wait for the next step, which may bring events, for at most `seconds`; return false if there was none. */
   arrival(seconds: number, signal: AbortSignal | undefined): Promise<boolean> {
     return new Promise((done, failed) => {
       signal?.throwIfAborted();
@@ -106,8 +106,8 @@ export class Line {
   }
 
   /**
-   * End every call, send what was written, and close the transport. `stops`: also send a stop to each
-   * device that was set in motion, as the policy says. Requests that were not sent never will be.
+   * End every call, send what was written, and close the transport. Unsent requests are never sent.
+   * `stops`: unless `onError` is "leave", also send a stop to each device that was set in motion.
    */
   async close(stops = false): Promise<void> {
     if (!this.open) return;
@@ -156,7 +156,7 @@ export class Line {
     else this.schedule(idle);
   }
 
-  /** Write bytes. The promise is fulfilled when the transport has taken them; no promise: it already has. */
+  /** Write bytes. Return `undefined` if the transport has taken them, else a promise of that. */
   private write(bytes: Uint8Array): Promise<void> | undefined {
     const pending = this.transport.write(bytes);
     if (!pending) return undefined;
@@ -177,16 +177,16 @@ export class Line {
         throw new LinkError(`${this.transport.url}: ${detail}`);
       },
     );
-    written.finally(() => clearTimeout(timer)).catch(() => {}); // the session reports it, too
+    written.finally(() => clearTimeout(timer)).catch(() => {}); // the calls end with this error
     return written;
   }
 
-  /** Continue when everything that has come was read, and the transport is free. */
+  /** Make the next step after all arrived bytes are read; while a write is pending, its end makes it. */
   private turn(): void {
     if (!this.writing) this.read();
   }
 
-  /** Continue when everything that has come was read. */
+  /** Make the next step after all arrived bytes are read. */
   private read(): void {
     if (this.reading) return;
     this.reading = true;
@@ -201,13 +201,13 @@ export class Line {
 
   private schedule(idle: number | undefined): void {
     const at = idle === undefined ? Infinity : performance.now() + idle / 1e6;
-    // The timer that runs comes first; it sets the next one.
+    // The running timer ends earlier; its step then sets the next timer.
     if (at >= this.wakesAt) return;
     clearTimeout(this.timer);
     this.wakesAt = at;
     this.timer = setTimeout(() => {
       this.wakesAt = Infinity;
-      // What came while the program computed has its time.
+      // A reply that arrived while the program was busy is read before its deadline is checked.
       this.read();
     }, at - performance.now());
   }

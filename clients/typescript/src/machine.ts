@@ -1,22 +1,22 @@
-/** The session in WebAssembly: one call takes a message of values and returns one. */
+/** The session in WebAssembly. A call passes its name and arguments as one serialized row of values. */
 import { failure } from "./errors.js";
 import { wasm } from "./wasm.js";
 
-/** What a message consists of; an absent value is `undefined`. */
+/** An argument or result of the session; `undefined`: absent. */
 export type Value = undefined | number | bigint | boolean | string | Uint8Array | readonly Value[];
 
 interface Exports {
   memory: WebAssembly.Memory;
-  /** Return where a message of that size can be written. */
+  /** Return the address at which a serialized call of that size can be written. */
   room(size: number): number;
-  /** Take the message of that size, and return where its answer is. */
+  /** Run the serialized call of that size; return the address of its result. */
   answer(size: number): number;
 }
 
 const encoder = new TextEncoder();
 const decoder = new TextDecoder();
 const WORD = 2 ** 32;
-/** Short texts recur: names of functions, commands and arguments. */
+/** The longest text that is cached: names of functions, commands and arguments recur. */
 const SHORT = 32;
 const MOST_SHORT = 2000;
 
@@ -36,7 +36,7 @@ export class Machine {
     return new Machine(instance.exports as unknown as Exports);
   }
 
-  /** Send a message and return the answer, or throw its error. */
+  /** Call a function of the session; return its result, or throw its error. */
   ask<T = Value>(...message: Value[]): T {
     let start = this.begin();
     while (!this.fits(message)) {
@@ -57,7 +57,7 @@ export class Machine {
     return this.at;
   }
 
-  /** Take a new view of the memory: it may have grown. */
+  /** Renew the view of the memory if the memory has grown. */
   private refresh(): void {
     const { buffer } = this.wasm.memory;
     if (this.heap.buffer !== buffer) {
@@ -122,7 +122,7 @@ export class Machine {
     return found;
   }
 
-  /** Return the next value of an answer. */
+  /** Return the next value of a result. */
   private read(): Value {
     const at = this.at + 1;
     switch (this.heap[at - 1]) {
@@ -181,7 +181,7 @@ export function edition(machine: Machine, table: string): [index: number, baudra
   return found;
 }
 
-/** Return the object of names and values in turn. */
+/** Return an object from a row in which names and values alternate. */
 export function objectOf(fields: readonly Value[]): Record<string, Value> {
   const found: Record<string, Value> = {};
   for (let at = 0; at < fields.length; at += 2) found[fields[at] as string] = fields[at + 1];

@@ -1,4 +1,4 @@
-/** What only Node has: files, TCP, and serial ports by the package `serialport`. */
+/** What only Node has: files, TCP, and serial ports through the package `serialport`. */
 import { stat } from "node:fs";
 import { readFile } from "node:fs/promises";
 import { connect, type Socket } from "node:net";
@@ -8,6 +8,7 @@ import { reason, within, type Transport } from "./transport.js";
 const CONNECT_SECONDS = 5;
 /** Node reads a socket into a new buffer of this size. */
 const TCP_CHUNK = 1 << 16;
+/** How often a job passes through the thread pool before the bytes of a serial port are delivered. */
 const ROUNDS = 4;
 
 /** Read a file of the package. */
@@ -26,11 +27,11 @@ export async function open(url: string, baudRate: number): Promise<Transport> {
     if (error instanceof UsageError) throw error;
     throw new LinkError(`${url}: cannot be opened: ${reason(error)}`, 0);
   }
-  // A serial port is read into what is left of a buffer.
+  // A serial port is read into the rest of a buffer, so a short read does not mean that it is empty.
   return new NodeTransport(url, stream, address ? TCP_CHUNK : 0);
 }
 
-/** What sockets and the ports of `serialport` have. */
+/** What sockets and the ports of `serialport` have in common. */
 interface Stream {
   on(event: "data", listener: (data: Uint8Array) => void): unknown;
   on(event: "error", listener: (error: Error) => void): unknown;
@@ -94,7 +95,7 @@ class NodeTransport implements Transport {
   }
 
   async close(): Promise<void> {
-    // The peer must get the last request, so the stream is ended before it is destroyed.
+    // `destroy` discards unsent bytes, so the stream is ended first.
     await within(1, new Promise<void>((done) => this.stream.end(done)));
     this.abort();
     await within(1, this.closed);
@@ -105,8 +106,8 @@ class NodeTransport implements Transport {
   }
 
   drained(run: () => void): void {
-    // The pool of threads reads a serial port. It begins what it is asked in order, and may end it in
-    // another one: so after a few rounds through the pool, what was in the port has come.
+    // Node's thread pool reads serial ports. It starts jobs in order, but they may end in another order.
+    // After a few jobs, one after the other, the read that began before them has delivered its bytes.
     const round = (left: number): void => {
       if (left) setImmediate(() => stat(".", () => round(left - 1)));
       else run();

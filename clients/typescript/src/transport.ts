@@ -3,23 +3,23 @@ import { LinkError } from "./errors.js";
 
 /** An open stream of bytes to a device. */
 export interface Transport {
-  /** Its name in errors; late replies to an earlier client of that name are recognised. */
+  /** The name in errors. A client recognises late replies to an earlier client of the same name. */
   readonly url: string;
-  /** The most bytes of one read; a shorter read leaves nothing unread. Left out: it may leave bytes. */
+  /** The largest read; a shorter one leaves no bytes unread. Omit it if a short read may leave some. */
   readonly chunk?: number;
-  /** Begin to report what comes, and the reason if the stream ends. */
+  /** Begin to report received bytes, and the reason if the stream ends. */
   start(received: (data: Uint8Array) => void, ended: (detail: string) => void): void;
-  /** Write bytes. The promise is fulfilled when the system has taken all; no promise: it already has. */
+  /** Write bytes. Return `undefined` if the system has taken all of them, else a promise of that. */
   write(data: Uint8Array): Promise<void> | undefined;
   /** Send what was written, and close the stream. It takes a second at most. */
   close(): Promise<void>;
   /** Close the stream at once; nothing more is sent. */
   abort(): void;
-  /** Run a function when what has come by now was reported; left out: it was by the next turn of the loop. */
+  /** Run a function after all arrived bytes are reported. Omit it if they are by the next turn of the loop. */
   drained?(run: () => void): void;
 }
 
-/** What a serial port of the browser (`navigator.serial`) has. */
+/** The members of a browser's serial port (`navigator.serial`) that a client uses. */
 export interface WebSerialPort {
   readonly readable: ReadableStream<Uint8Array> | null;
   readonly writable: WritableStream<Uint8Array> | null;
@@ -32,7 +32,7 @@ export function reason(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
 }
 
-/** Wait for a promise, or for some time. */
+/** Wait for a promise, but at most for `seconds`. */
 export async function within(seconds: number, promise: Promise<unknown> | undefined): Promise<void> {
   let timer: ReturnType<typeof setTimeout> | undefined;
   const over = new Promise((done) => (timer = setTimeout(done, seconds * 1000)));
@@ -53,7 +53,7 @@ export function nameOf(port: WebSerialPort): string {
   return name;
 }
 
-/** Open a serial port that the browser gave the page. */
+/** Open a serial port that the browser lets the page use. */
 export async function openWebSerial(
   port: WebSerialPort,
   url: string,
@@ -89,7 +89,7 @@ class WebSerial implements Transport {
           received(chunk.value);
           continue;
         }
-        // After a break, a wrong parity bit or too many bytes, the port goes on with a new stream.
+        // After a break, a parity error or an overrun, the port continues with a new stream.
         const next = this.closed ? stream : this.port.readable;
         if (!next || next === stream) return ended(`cannot be read: ${chunk}`);
         this.reader.releaseLock();

@@ -26,7 +26,7 @@ pub trait ByteStream: AsyncRead + AsyncWrite + Send + Unpin + 'static {}
 
 impl<T: AsyncRead + AsyncWrite + Send + Unpin + 'static> ByteStream for T {}
 
-/// How long a future sleeps if there is nothing to do.
+/// The longest that a future sleeps if there is nothing to do.
 const LONGEST: Duration = Duration::from_secs(3600);
 
 /// An arm at the other end of a stream; clients of editions add a method for each command.
@@ -39,7 +39,7 @@ pub struct AsyncClient {
     shared: Arc<Shared<Arc<Arrived>>>,
 }
 
-/// Wakes every future that waits: the stream wakes only the task that polled it last.
+/// Wakes every future that waits. The stream itself would wake only the task that polled it last.
 #[derive(Default)]
 struct Arrived(Notify);
 
@@ -105,8 +105,8 @@ impl AsyncClient {
         self.until(None, |session, _| session.take(call.id)).await
     }
 
-    /// Read and write for all until `done` returns something. Its argument is whether `longest` has
-    /// passed.
+    /// Read and write for all futures until `done` returns something. Its second argument is
+    /// whether `longest` has passed.
     async fn until<T>(
         &self,
         longest: Option<Duration>,
@@ -193,7 +193,7 @@ impl<S: ByteStream> Polled<S> {
 
 impl<S: ByteStream> Read for Polled<S> {
     fn read(&mut self, data: &mut [u8]) -> io::Result<usize> {
-        // The stream may keep written bytes in a buffer until then.
+        // The stream may keep written bytes in a buffer until it is flushed.
         let _ = self.flush();
         let mut buffer = ReadBuf::new(data);
         self.poll(|stream, context| stream.poll_read(context, &mut buffer))?;

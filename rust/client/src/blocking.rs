@@ -13,11 +13,11 @@ use crate::streams::{Polling, Received, client_methods};
 use crate::typed::{DeviceEvent, Request, Table};
 use crate::{Error, Options, Sample, Value, lock};
 
-/// The longest that a thread reads before it checks whether others have something to do; threads that
-/// wait for the connection share that time. A timer that is due before the next tick of the system,
-/// usually 4 ms, would cost a third of the time of a call.
+/// The longest that a thread reads before it lets other threads use the connection; the more
+/// threads wait, the shorter each reads. A shorter timer, due before the next tick of the system
+/// (usually 4 ms), would cost a third of the time of a call.
 const SLICE: Duration = Duration::from_millis(5);
-/// How long a thread leaves the port to others.
+/// How long a thread pauses to let others use the port.
 const TURN: Duration = Duration::from_micros(500);
 
 /// An arm at the other end of a port; clients of editions add a method for each command.
@@ -27,14 +27,14 @@ const TURN: Duration = Duration::from_micros(500);
 #[derive(Clone)]
 pub struct Client {
     handle: Handle,
-    /// It also counts the threads that wait for the connection.
+    /// The connection, and the number of threads that wait for it.
     shared: Arc<Shared<AtomicU32>>,
 }
 
 client_methods!(Client Option std::thread::sleep, [] [] [] []);
 
 impl Client {
-    /// Open a port: that of a serial line, or `socket://host:port`.
+    /// Open a serial port, or connect to `socket://host:port`.
     pub fn open(edition: Table, port: &str, mut options: Options) -> Result<Self, Error> {
         let opened = port::open(port, options.baudrate.unwrap_or(edition.baudrate))?;
         options.port_name = Some(port.to_owned());
@@ -52,13 +52,13 @@ impl Client {
         Ok(Self { handle, shared })
     }
 
-    /// Close the port when what was written is sent. Nothing more is sent to the arm; calls of other
+    /// Send what was written, and close the port. Nothing more is sent to the arm; calls of other
     /// threads end with a `LinkError`. Closing twice is harmless.
     pub fn close(&self) -> Result<(), Error> {
         self.connection().close()
     }
 
-    /// Return the connection as soon as no other thread has it.
+    /// Wait until no other thread holds the connection, and return it.
     fn connection(&self) -> MutexGuard<'_, Connection> {
         self.shared.turns.fetch_add(1, Ordering::SeqCst);
         let connection = lock(&self.shared.connection);
@@ -67,14 +67,14 @@ impl Client {
     }
 
     fn perform(&self, prepared: &Prepared) -> Outcome {
-        // Another thread may have the connection.
+        // The time counts from here, since `connection()` may wait for another thread.
         let called = Instant::now();
         let id = self.connection().submit(prepared, &self.handle, called);
         self.until(None, |session, _| session.take(id))
     }
 
-    /// Read and write for all until `done` returns something. Its argument is whether `longest` has
-    /// passed.
+    /// Read and write for all threads until `done` returns something. Its second argument is
+    /// whether `longest` has passed.
     fn until<T>(
         &self,
         longest: Option<Duration>,
@@ -95,7 +95,7 @@ impl Client {
         }
     }
 
-    /// Leave the connection to other threads if they want it.
+    /// Release the connection for a moment if another thread waits for it.
     fn leave<'a>(&'a self, connection: MutexGuard<'a, Connection>) -> MutexGuard<'a, Connection> {
         if self.shared.turns.load(Ordering::SeqCst) == 0 {
             return connection;

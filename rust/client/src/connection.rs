@@ -18,7 +18,7 @@ pub(crate) const LONGEST_STOP: Duration = Duration::from_secs(1);
 /// The pause before the next attempt to write on a full line.
 const PAUSE: Duration = Duration::from_micros(500);
 
-/// A connection that handles share, and what they need to take turns with it.
+/// A connection that several handles share, and what they need to take turns.
 pub(crate) struct Shared<T> {
     pub connection: Mutex<Connection>,
     pub turns: T,
@@ -68,13 +68,15 @@ impl Connection {
         self.session.submit(prepared, handle, called_at, now)
     }
 
-    /// Return how long there is nothing to do unless bytes come.
+    /// Return the time until the next deadline, at most `longest`; only received bytes need an
+    /// earlier step.
     pub fn idle(&self, longest: Duration) -> Duration {
         let idle = self.session.idle(self.now());
         idle.map_or(longest, |idle| longest.min(Duration::from_nanos(idle)))
     }
 
-    /// Read once, let time pass, and write what is to be sent; return whether bytes came.
+    /// Read once, end requests whose deadline passed, and write what is due; return whether bytes
+    /// were read.
     pub fn step(&mut self, longest: Duration) -> bool {
         let (idle, mut buffer) = (self.idle(longest), [0; 1024]);
         let read = self.port(idle).and_then(|port| port.read(&mut buffer));
@@ -113,7 +115,7 @@ impl Connection {
         }
     }
 
-    /// Return the port, with this limit on the time of its next read.
+    /// Return the port; its next read takes at most `longest`.
     fn port(&mut self, longest: Duration) -> std::io::Result<&mut dyn Port> {
         let port = self.port.as_mut().ok_or(ErrorKind::NotConnected)?;
         if !(self.is_instant && longest.is_zero()) {
@@ -124,7 +126,7 @@ impl Connection {
         Ok(&mut **port)
     }
 
-    /// Close the port when what was written is sent.
+    /// Send what was written, and close the port.
     pub fn close(&mut self) -> Result<(), Error> {
         let Some(mut port) = self.port.take() else {
             return Ok(());

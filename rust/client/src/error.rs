@@ -8,7 +8,7 @@ use cobotwire_core::exchange::WaitedFor;
 /// Why a call failed. Its `message` says what happened, to what, and what to do.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-#[allow(missing_docs)] // the messages
+#[allow(missing_docs)] // of the fields `message`
 pub enum Error {
     /// An error of the caller, detected before a byte was sent.
     UsageError { message: String },
@@ -29,11 +29,12 @@ pub enum Error {
     /// The reply, or the requested acknowledgement, did not arrive in time.
     ReplyTimeout {
         message: String,
-        /// Since the request was sent; since the call, if its deadline passed.
+        /// The time since the request was sent, or since the call began if its deadline passed.
         waited: Duration,
-        /// How often the request was sent; 0: it was not, and never will be.
+        /// How often the request was sent; 0: it was not sent, and never will be.
         attempts: usize,
-        /// What the call waited for when its deadline passed; `None`: the arm's time was over.
+        /// What the call waited for when its deadline passed; `None`: the arm did not reply within
+        /// its timeout.
         waited_for: Option<WaitedFor>,
     },
 }

@@ -1,4 +1,4 @@
-//! Requests by the names of their commands and arguments, and replies by the names of their fields.
+//! Encodes requests from the names of commands and arguments, and names the fields of replies.
 
 use std::time::Duration;
 
@@ -23,7 +23,7 @@ pub struct Prepared {
     pub address: Option<u8>,
 }
 
-/// A handle of a client: how it encodes requests, and with what it sends them.
+/// A handle of a client: the table, options and address with which it encodes and sends requests.
 #[derive(Clone, Debug)]
 pub struct Handle {
     /// The table, with its ranges narrowed to the limits.
@@ -46,7 +46,7 @@ impl Handle {
         address.map_or(Ok(handle.clone()), |address| handle.at(&address))
     }
 
-    /// Return this handle for another address, by its name or number.
+    /// Change the address, given as a name or number, and return the handle.
     pub fn at(mut self, address: &str) -> Result<Self, Error> {
         let (edition, number) = (&self.edition, address.parse());
         let given = number.map_or_else(|_| Value::Text(address.to_owned()), Value::Integer);
@@ -148,7 +148,7 @@ impl Handle {
         result(self.fields(of, answer), (R::RESULTS, true), R::RADIANS)
     }
 
-    /// Return an error of the port.
+    /// Return a `LinkError` that names the port.
     pub fn link(&self, detail: &str, written: Option<usize>) -> Error {
         let url = self.options.port_name.as_deref();
         Error::link(url.unwrap_or("port"), detail, written)

@@ -20,8 +20,8 @@
 //! module of a protocol of your own.
 //!
 //! Every method that sends a request fails with a [`Error::UsageError`] before a byte is sent if an
-//! argument is not allowed, with a `LinkError` if the port is lost, and, if it waits for a reply, with
-//! a `ReplyTimeout`, `ProtocolError` or `RequestRefused`.
+//! argument is not allowed, with a `LinkError` if the port is lost, and, if it waits for a reply,
+//! with a `ReplyTimeout`, `ProtocolError` or `RequestRefused`.
 //!
 //! A client that is dropped without `close()` stops an arm that it has set in motion: see
 //! [`OnDrop`].
@@ -79,7 +79,7 @@ pub struct Sample<T> {
     pub value: T,
     /// When its request was sent, in nanoseconds since the client was opened.
     pub requested_at: Nanos,
-    /// When its reply was read, likewise.
+    /// When its reply was read, on the same clock.
     pub replied_at: Nanos,
 }
 

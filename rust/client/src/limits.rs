@@ -10,7 +10,7 @@ use cobotwire_table::{Command, Edition, Field, Value, bad_argument, error_text};
 use crate::Error;
 use crate::typed;
 
-/// The lowest and the highest value that is allowed.
+/// The lowest and the highest allowed value.
 pub type Range = (f64, f64);
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -23,13 +23,13 @@ const FRAMES: [&str; 4] = ["tool", "world", "reference_frame", "end_type"];
 pub struct Limits {
     /// The highest speed in percent, 1..100.
     pub speed: Option<f64>,
-    /// Ranges for x, y and z in millimetres: where coordinates may send the end of the arm. Motions by
-    /// angles of joints are refused then. The path to a target is not checked.
+    /// Ranges for x, y and z in millimetres: where coordinates may send the end of the arm. If they
+    /// are set, motions to joint angles are refused. The path to a target is not checked.
     pub workspace: Option<[Option<Range>; 3]>,
 }
 
 impl Limits {
-    /// Return the edition with the ranges of these limits.
+    /// Return the edition with the ranges of its requests narrowed to these limits.
     pub(crate) fn applied(&self, edition: typed::Table) -> Result<typed::Table, Error> {
         self.check(&edition)?;
         if *self == Self::default() {
@@ -155,7 +155,8 @@ fn is_speed(field: &Field) -> bool {
     field.name == "speed" && numbers.all(|number| number.unit == "percent")
 }
 
-/// Return a range as raw values, rounded inwards. Its ends are decimals: 0.1 is one tenth.
+/// Return a range as raw values, rounded inwards. An end means its decimal: 0.1 is one tenth, not
+/// the double nearest to it.
 fn raw_range(number: &Number, (low, high): Range) -> (i64, i64) {
     if number.is_float() {
         // A lower limit of zero includes -0.0.
@@ -177,7 +178,7 @@ fn find(edition: &Edition, is: impl Fn(&Command) -> bool) -> Option<&Command> {
     edition.commands.iter().find(|each| is(each))
 }
 
-/// Return whether a command may set joints in motion; one for the gripper does not.
+/// Return whether a command may set joints in motion. Commands for the gripper do not.
 fn moves_arm(edition: &Edition, command: &Command) -> bool {
     let read_by = |each: &Command| Some(&each.name) == command.read_by.as_ref();
     let resumes = find(edition, read_by).is_some_and(|query| query.role == "paused");

@@ -10,14 +10,15 @@ use crate::{Error, Limits, Value};
 /// How a client sends requests, and what it does with the arm at its end.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// How long the arm has to reply once a request is sent; default: as the edition says.
+    /// How long the arm has to reply once a request is sent; default: the timeout of the edition.
     pub timeout: Option<Duration>,
     /// How long a call may take from its beginning, waiting for its turn included; default:
     /// no limit.
     pub deadline: Option<Duration>,
     /// How often queries are sent within their timeout; its times are in nanoseconds.
     pub retry: RetryPolicy,
-    /// The device that requests go to, by its name or number; default: the edition's first address, if it has any.
+    /// The device that requests go to, by its name or number; default: the edition's first address,
+    /// if it has any.
     pub address: Option<String>,
     /// The name of the port that is passed to `over()`. A client knows which late replies to an
     /// earlier client of this process may still come, if both were opened at a port of this name.

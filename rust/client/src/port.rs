@@ -12,11 +12,12 @@ pub(crate) const CONNECT: Duration = Duration::from_secs(5);
 
 /// A stream of bytes to a device. The time of a read can be limited.
 ///
-/// When the time is over or the line is full, `read` and `write_some` return `ErrorKind::WouldBlock` or
-/// `ErrorKind::TimedOut`. A `read` of 0 bytes says that the peer has closed the stream.
+/// If no byte comes in time, `read` returns `ErrorKind::WouldBlock` or `ErrorKind::TimedOut`, and
+/// so does `write_some` if the stream is full. A `read` of 0 bytes means that the peer has closed
+/// the stream.
 pub trait Port: Read + Write + Send {
-    /// Limit the time of the next `read`, or wait here for bytes for at most that time. Zero stays
-    /// in force until the next call of this method: `read` and `write_some` then return at once.
+    /// Limit the time of the next `read`, or wait here for bytes for at most that time. A limit of
+    /// zero holds until the next call of this method: `read` and `write_some` return at once.
     /// `write_some` is called only while the limit is zero.
     fn wait_at_most(&mut self, longest: Duration) -> io::Result<()>;
 
@@ -39,7 +40,7 @@ impl Port for TcpStream {
         #[cfg(unix)]
         {
             use rustix::event::{PollFd, PollFlags, Timespec, poll};
-            // This is as exact as the system allows, and takes one system call.
+            // `poll` waits as exactly as the system allows, and is one system call.
             let longest = Timespec::try_from(longest).map_err(io::Error::other)?;
             let ready = poll(&mut [PollFd::new(self, PollFlags::IN)], Some(&longest))?;
             (ready > 0)
@@ -61,20 +62,20 @@ impl Port for Box<dyn serialport::SerialPort> {
     }
 
     fn write_some(&mut self, data: &[u8]) -> io::Result<usize> {
-        // `write` waits, within the limit, until the line takes bytes; then it waits, without a
-        // limit, until all bytes are taken. A driver that is ready takes this few bytes at once.
+        // `write` waits within the limit until the driver takes bytes, and then without a limit
+        // until it has taken all. A driver that takes any bytes takes 32 at once.
         self.write(data.get(..32).unwrap_or(data))
     }
 
     fn finish(&mut self) -> io::Result<()> {
-        // A flush would wait for a stuck line without limit.
+        // A flush would wait without limit if the peer takes no bytes.
         for _ in 0..1000 {
             if self.bytes_to_write()? == 0 {
                 return Ok(());
             }
             std::thread::sleep(Duration::from_millis(1));
         }
-        // With unsent bytes, the system would wait for the line when the port is closed.
+        // If bytes are unsent, the system waits for them when the port is closed.
         self.clear(serialport::ClearBuffer::Output)?;
         Err(io::ErrorKind::TimedOut.into())
     }

@@ -12,14 +12,15 @@ use crate::handle::{Handle, Named, Outcome, Prepared};
 use crate::options::nanos;
 use crate::{Error, OnDrop};
 
-/// The deadline of a write that has no other: a line that takes nothing for longer is stuck.
+/// The longest time for a write without a deadline: a transport that takes nothing for longer is
+/// stuck.
 const LONGEST_WRITE: Nanos = 1_000_000_000;
-/// A write that takes longer than this was held up by a full line.
+/// A write that takes longer than this was delayed by a full transport.
 const SLOW_WRITE: Nanos = 5_000_000;
 /// The pause before the next attempt to write on a full line.
 const FULL: Nanos = 1_000_000;
 
-/// How many events wait for their consumer; if more come, the oldest is dropped.
+/// The most events that wait for a consumer; if another comes, the oldest is dropped.
 const CAPACITY: usize = 1000;
 
 /// Events of one command that wait for their consumer.
@@ -59,7 +60,7 @@ struct Writing {
     taken: usize,
     at: Nanos,
     until: Nanos,
-    /// The device that it stops, if it does.
+    /// The address that it stops, if it is a stop.
     stops: Option<Option<u8>>,
 }
 
@@ -74,14 +75,14 @@ pub struct Session {
     /// The one-way requests that wait until they can be written.
     one_ways: VecDeque<CallId>,
     writing: Option<Writing>,
-    /// The commands of events, each with a queue of a consumer.
+    /// For each consumer of events, the command of the events and the queue.
     queues: Vec<(usize, Weak<Mutex<Queue>>)>,
     /// The devices that were set in motion, and not stopped since.
     moved: Vec<Option<u8>>,
 }
 
 impl Session {
-    /// Start a session, which respects what an earlier one left on its port.
+    /// Start a session. `left` is the state that the previous session on its port persisted.
     pub fn new(handle: &Handle, left: &PersistedState) -> Self {
         let mut exchange = Exchange::new(Arc::new(handle.edition.protocol.clone()));
         exchange.restore(left);
@@ -98,7 +99,8 @@ impl Session {
         }
     }
 
-    /// Return how long there is nothing to do unless bytes come.
+    /// Return the time until the next step is due, unless bytes are received earlier; `None`: no
+    /// step is due.
     pub fn idle(&self, now: Nanos) -> Option<Nanos> {
         match &self.writing {
             Some(_) => Some(FULL),
@@ -107,7 +109,7 @@ impl Session {
         }
     }
 
-    /// Keep events of a command for a consumer, from now on.
+    /// Return a queue that receives the events of a command from now on.
     pub fn subscribe(&mut self, command: usize) -> Arc<Mutex<Queue>> {
         let queue = Arc::<Mutex<Queue>>::default();
         self.queues.retain(|(_, queue)| queue.strong_count() > 0);
@@ -147,7 +149,7 @@ impl Session {
         id
     }
 
-    /// Return how a request has ended, once; `None`: it has not.
+    /// Return the outcome of a request, once; `None`: it has not ended.
     pub fn take(&mut self, id: CallId) -> Option<Outcome> {
         let call = self.calls.get(&id)?;
         let mut fault = call.fault.as_ref().or(self.fault.as_ref()).cloned();
@@ -181,7 +183,7 @@ impl Session {
         }
     }
 
-    /// Take received bytes, which may be empty, and let time pass.
+    /// Take received bytes, if any, and end what is overdue at `now`.
     pub fn receive(&mut self, data: &[u8], now: Nanos) {
         let mut writing = self.writing.iter();
         if writing.any(|writing| writing.until <= now) {
@@ -196,8 +198,8 @@ impl Session {
         self.dispatch(events);
     }
 
-    /// Return the bytes that are to be written now; none if no request may be sent. `drained`: all
-    /// bytes that have come were read.
+    /// Return the bytes to write now; none if no request may be sent. `drained`: whether all bytes
+    /// that have arrived were read.
     pub fn outgoing(&mut self, now: Nanos, drained: bool) -> &[u8] {
         if self.writing.is_none() && self.fault.is_none() {
             self.writing = self.next_write(now, drained);
@@ -258,7 +260,7 @@ impl Session {
         }
     }
 
-    /// End a write. If it is cut, `why` is the reason; empty: its time is over.
+    /// End a write. If it is incomplete, `why` is the reason; empty: its deadline passed.
     pub fn end_write(&mut self, why: &str, now: Nanos) {
         let Some(writing) = self.writing.take() else {
             return;
@@ -278,8 +280,8 @@ impl Session {
         if let Some(stopped) = writing.stops.filter(|_| taken == all) {
             self.moved.retain(|address| *address != stopped);
         }
-        // A given-up request has no caller any more. If a repeated query is not taken, the line is
-        // only full; its first attempt was taken.
+        // A request that was given up has no call. If the transport does not take a repeated query,
+        // that is no error: its first attempt was written.
         let call = self.calls.get_mut(&writing.id);
         let Some(call) = call.filter(|call| taken == all || call.written == 0 || !why.is_empty())
         else {
@@ -304,7 +306,7 @@ impl Session {
         }
     }
 
-    /// End every request: the transport is gone.
+    /// End every request, since the transport is lost.
     pub fn lose(&mut self, detail: &str, now: Nanos) -> Error {
         if let Some(writing) = self.writing.take()
             && let Some(call) = self.calls.get_mut(&writing.id)
@@ -319,7 +321,8 @@ impl Session {
         fault
     }
 
-    /// End every request, since the client was closed; return what the next session must know.
+    /// End every request, since the client was closed; return the state for the port's next
+    /// session.
     pub fn close(&mut self, now: Nanos) -> PersistedState {
         let state = self.persist(now);
         self.moved.clear();
@@ -327,14 +330,15 @@ impl Session {
         state
     }
 
-    /// Return what the next session on this port must know. What is being written counts as cut.
+    /// Return the state for the next session on this port. A request that is partly written counts
+    /// as cut.
     pub fn persist(&mut self, now: Nanos) -> PersistedState {
         self.end_write("the client was closed", now);
         self.exchange.persist(now)
     }
 
-    /// Return the bytes that stop every device in motion, as the policy says. They are empty
-    /// if nothing moves.
+    /// Return the bytes that stop every device in motion. They are empty if none moves, or if
+    /// `on_drop` is `Leave`.
     pub fn stops(&mut self, now: Nanos) -> Vec<u8> {
         self.end_write("", now);
         let moved = std::mem::take(&mut self.moved);

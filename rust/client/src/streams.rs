@@ -10,8 +10,8 @@ use crate::handle::{Handle, Prepared};
 use crate::{Error, Value};
 
 /// The samples of a query, or the events of a type: an iterator of [`poll`](crate::Client::poll) or
-/// [`events`](crate::Client::events), and a `Stream` if the client is asynchronous. `N` is the
-/// type of the next one, or of its future.
+/// [`events`](crate::Client::events), and a `Stream` if the client is asynchronous. `N` is
+/// `Option<item>`, or a future of that.
 pub struct Received<N> {
     pub(crate) next: Box<dyn FnMut() -> N + Send>,
     #[cfg_attr(not(feature = "tokio"), allow(dead_code))]
@@ -20,8 +20,8 @@ pub struct Received<N> {
 }
 
 impl<N> Received<N> {
-    /// Return how many periods had no sample, or how many events were dropped because too many
-    /// waited; the oldest is dropped first.
+    /// Return the number of periods without a sample, or of events that were dropped, oldest first,
+    /// because too many were queued.
     #[must_use]
     pub fn missed(&self) -> u64 {
         (self.missed)()
@@ -105,13 +105,15 @@ macro_rules! client_methods {
                 &self.handle.edition
             }
 
-            /// Return this client for another address, by its name or number.
+            /// Return a client for another address, by its name or number; both share the
+            /// connection.
             pub fn at(&self, address: &str) -> Result<Self, Error> {
                 let handle = self.handle.clone().at(address)?;
                 Ok(Self { handle, shared: self.shared.clone() })
             }
 
-            /// Return this client so that requests without a reply wait for their acknowledgement.
+            /// Return a client on the same connection that waits for acknowledgements of one-way
+            /// requests.
             #[must_use]
             pub fn acknowledged(&self, within: Duration) -> Self {
                 let mut other = self.clone();
@@ -139,9 +141,9 @@ macro_rules! client_methods {
 
             /// Sample a query `rate` times a second, above 0 and up to 1000.
             ///
-            /// A request is sent only when the loop wants a sample, and not again within its period.
-            /// A period without a reply has no sample; [`Received::missed`] counts such periods, and
-            /// those for which the loop came too late.
+            /// A request is sent only when the loop wants a sample, and not again within its
+            /// period. A period without a reply has no sample; [`Received::missed`] counts such
+            /// periods, and those that passed before the loop wanted a sample.
             pub fn poll<R: Request>(
                 &self,
                 request: R,
@@ -181,8 +183,7 @@ macro_rules! client_methods {
                 }
             }
 
-            /// Receive the events of a type that come from now on, until none comes within
-            /// `timeout`.
+            /// Receive the events of a type from now on, until none arrives within `timeout`.
             pub fn events<E: DeviceEvent>(
                 &self,
                 timeout: Option<Duration>,

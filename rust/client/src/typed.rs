@@ -31,9 +31,9 @@ pub trait DeviceEvent: Typed + Send + 'static {
     const FIELDS: &'static [&'static str];
 }
 
-/// A type that arguments and fields of replies have.
+/// A type of arguments and of the fields of replies.
 pub trait Typed: Sized {
-    /// Convert it.
+    /// Convert this value.
     fn into_value(self) -> Value;
 
     /// Convert a value; `None`: it is of another type.
@@ -50,7 +50,7 @@ macro_rules! typed {
             fn from_value(value: Value) -> Option<Self> {
                 match value {
                     $($pattern => Some($result),)+
-                    #[allow(unreachable_patterns)] // a value takes all
+                    #[allow(unreachable_patterns)] // `Value` accepts every value
                     _ => None,
                 }
             }

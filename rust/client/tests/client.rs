@@ -1,5 +1,5 @@
-//! The clients over a port in memory. `tests/attack` drives both over lines that lose, double and
-//! cut bytes, `tests/session` compares the exchange with that of Python.
+//! The clients over a port in memory. `tests/attack` drives both over transports that lose, double
+//! and cut bytes; `tests/session` compares the exchange with that of Python.
 #![allow(clippy::unwrap_used, clippy::panic)] // a test fails by a panic
 
 use std::collections::VecDeque;
@@ -33,7 +33,7 @@ struct Line {
     room: Option<usize>,
 }
 
-/// A port in memory: `get_angles` gets its reply.
+/// A port in memory that replies to `get_angles` only.
 #[derive(Clone, Default)]
 struct Memory(Arc<Mutex<Line>>);
 
@@ -120,7 +120,7 @@ fn ready<T>(polled: Poll<T>) -> Option<T> {
     }
 }
 
-/// Return an error and how much of the request it says was written.
+/// Return the message of a `LinkError`, and how many bytes of the request were written.
 fn lost<T: std::fmt::Debug>(outcome: Result<T, Error>) -> (String, Option<usize>) {
     match outcome.unwrap_err() {
         Error::LinkError { message, written } => (message, written),
@@ -200,7 +200,7 @@ fn cut_request_is_ended_before_the_next_one() {
     port.line().room = None;
     arm.stop().unwrap();
     let sent = port.written();
-    // The frame that was begun is filled up, so that the stop is a frame of its own.
+    // The incomplete frame is filled up, so that the stop is a frame of its own.
     assert!(sent.len() >= 18 + STOP.len() && sent.ends_with(&STOP));
 }
 
@@ -243,7 +243,7 @@ fn samples_and_events_are_streams() {
 }
 
 #[test]
-fn full_line_delays_neither_the_refusal_of_a_stop_nor_a_close() {
+fn stop_and_close_return_by_their_deadline_while_the_transport_is_full() {
     runtime().block_on(async {
         let (near, far) = tokio::io::duplex(10);
         let options = options(|options| options.deadline = Some(10 * SHORT));
@@ -257,7 +257,8 @@ fn full_line_delays_neither_the_refusal_of_a_stop_nor_a_close() {
         let message = error.to_string();
         assert!(message.starts_with("stop() was not sent: its deadline passed"));
         assert!(message.ends_with("while the line took no bytes"));
-        // The rest of the cut request is stuck, and then nobody waits any more.
+        // The rest of the cut request cannot be written; close() ends the stop() that waits for
+        // that.
         let closed = async {
             tokio::time::sleep(SHORT).await;
             arm.close().await;
@@ -270,14 +271,14 @@ fn full_line_delays_neither_the_refusal_of_a_stop_nor_a_close() {
 }
 
 #[test]
-fn request_that_was_given_up_at_a_full_line_is_not_sent() {
+fn request_given_up_while_the_transport_is_full_is_not_sent() {
     runtime().block_on(async {
         let (near, mut far) = tokio::io::duplex(10);
         let arm = AsyncMyCobot280::over(near, Options::default()).unwrap();
         let moved = timeout(SHORT, arm.send_angles([0.0; 6], 50)).await;
         assert!(moved.is_err());
         assert!(timeout(SHORT, arm.power_off()).await.is_err());
-        // The request that was begun is written to its end, so that the stop is a frame of its own.
+        // The request that was partly written is completed, so that the stop is a frame of its own.
         let mut sent = [0; 24];
         let read = timeout(10 * SHORT, far.read_exact(&mut sent));
         let (stopped, read) = both(arm.stop(), read).await;
@@ -287,7 +288,7 @@ fn request_that_was_given_up_at_a_full_line_is_not_sent() {
 }
 
 #[test]
-fn stop_is_sent_when_a_full_line_takes_bytes_again() {
+fn stop_is_sent_when_a_full_transport_takes_bytes_again() {
     runtime().block_on(async {
         let (near, mut far) = tokio::io::duplex(10);
         let arm = AsyncMyCobot280::over(near, Options::default()).unwrap();
@@ -350,7 +351,7 @@ fn error_says_how_much_of_a_request_was_written() {
         std::thread::yield_now();
     }
     arm.close().unwrap();
-    // A request that was written whole, and two that were not sent.
+    // One request was completely written; the two after it were not sent.
     assert_eq!(lost(waiting.join().unwrap()).1, Some(5));
     let closed = ("port: is closed".to_owned(), Some(0));
     assert_eq!(lost(arm.get_coords()), closed);
@@ -368,14 +369,14 @@ fn serial_port_of_the_caller_never_waits_longer_than_the_deadline() {
         options.on_drop = OnDrop::Leave;
     });
     let arm = MyCobot280::over(near, options).unwrap();
-    // Nobody reads what the other end of the line receives.
+    // Nobody reads from `far`, so the port fills up.
     let mut last = Instant::now();
     let refused = (0..10_000).find_map(|_| {
         last = Instant::now();
         arm.stop().err()
     });
     assert!(last.elapsed() < Duration::from_secs(1));
-    assert!(refused.is_some(), "the line is never full");
+    assert!(refused.is_some(), "10,000 stops did not fill the port");
     drop(far);
 }
 

@@ -22,11 +22,12 @@ pub struct Computed {
     pub algorithm: Option<Algorithm>,
     /// The width of the number in bytes: at most 16.
     pub width: usize,
-    /// Their order.
+    /// The order of its bytes.
     pub order: Order,
-    /// The offset of the first byte that the number covers; it covers all up to itself.
+    /// The offset of the first byte that the number covers; it covers all bytes from there to
+    /// itself.
     pub from: usize,
-    /// The bytes after it.
+    /// The bytes after the number.
     pub footer: Vec<u8>,
 }
 
@@ -57,7 +58,7 @@ impl Check {
         }
     }
 
-    /// Return whether a frame ends as it must.
+    /// Return whether a frame ends with the right bytes.
     #[inline]
     pub(crate) fn holds(&self, frame: &[u8]) -> bool {
         match self {
@@ -66,13 +67,13 @@ impl Check {
         }
     }
 
-    /// Append what must follow the frame so far.
+    /// Append the bytes that end the frame.
     pub fn end(&self, frame: &mut Vec<u8>) {
         frame.resize(frame.len() + self.size(), 0);
         self.fill(frame);
     }
 
-    /// Write the bytes that end a whole frame.
+    /// Overwrite the last bytes of a complete frame with those that must end it.
     #[inline]
     pub(crate) fn fill(&self, frame: &mut [u8]) {
         match self {
@@ -133,7 +134,8 @@ impl Computed {
 }
 
 impl Algorithm {
-    /// Return the number for some bytes; its low bytes count.
+    /// Return the number for some bytes; only as many of its low bytes as the check is wide are
+    /// used.
     #[must_use]
     pub fn of(&self, data: &[u8]) -> u128 {
         let sum = || data.iter().map(|byte| u128::from(*byte)).sum::<u128>();

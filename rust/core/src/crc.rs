@@ -1,4 +1,4 @@
-//! CRCs by their parameters, as in Greg Cook's catalogue (the Rocksoft model).
+//! Computes CRCs from their parameters, as in Greg Cook's catalogue (the Rocksoft model).
 
 use alloc::boxed::Box;
 
@@ -19,7 +19,7 @@ pub struct CrcParameters {
     pub xorout: u128,
 }
 
-/// A CRC with the effect of each byte on it: eight times as fast as a loop over bits.
+/// A CRC with a table of the effect of each byte, which is eight times as fast as a loop over bits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Crc {
     parameters: CrcParameters,

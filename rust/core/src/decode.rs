@@ -1,5 +1,5 @@
-//! Decodes bytes to values. An illegal frame, or a number that the table does not allow, is an
-//! error.
+//! Decodes one frame to values. Bytes that are not a legal frame, and numbers that the table does
+//! not allow, are errors.
 
 use alloc::vec::Vec;
 
@@ -31,7 +31,7 @@ pub enum DecodeError {
 pub struct Decoded {
     /// Which message it is.
     pub variant: VariantId,
-    /// Its values: one for each field; the elements of a row follow the row.
+    /// Its values: one for each field; each row is followed by its elements.
     pub values: Vec<Value>,
     /// Its address byte, if the format has one.
     pub address: Option<u8>,
@@ -49,7 +49,7 @@ impl Decoded {
     }
 }
 
-/// Return how many of these values are the first field.
+/// Return how many of these values belong to the first field.
 fn size(values: &[Value]) -> usize {
     match values.first() {
         None => 0,
@@ -62,12 +62,12 @@ fn size(values: &[Value]) -> usize {
 }
 
 /// Decode `data`, which must be one frame and nothing else, as the first message that allows its
-/// values. With `of`, only messages of the command with that index count.
+/// values. `of` restricts the search to messages of the command with that index.
 ///
 /// # Errors
 /// The bytes are not one legal frame, or a number in it is not allowed. The error names the first
-/// such number; a selector precedes the fields that depend on it. If several variants reject the
-/// frame, the error is that of the first one.
+/// such number; selectors are checked before the fields that depend on them. If several variants
+/// reject the frame, the error is that of the first one.
 pub fn decode(
     table: &Table,
     direction: Direction,
@@ -79,10 +79,10 @@ pub fn decode(
 }
 
 /// Decode a frame that was already validated, as the first message of these rules that allows its
-/// values. With `of`, only messages of the command with that index count.
+/// values. `of` restricts the search to messages of the command with that index.
 ///
 /// # Errors
-/// No message allows the values, or these rules have no such message.
+/// No message allows the values, or these rules have no message with this id and LEN.
 pub fn read(
     table: &Table,
     rules: &Rules,
@@ -148,8 +148,8 @@ fn no_message(table: &Table, rules: &Rules, frame: Frame<'_>, of: Option<usize>)
     reject(table.frame(), reason, data)
 }
 
-/// Return why `data` cannot be a frame of the command `of`, by its id only; `None` if it may be
-/// one.
+/// Return why `data` cannot be a frame of the command `of`, judged by its id and LEN only; `None`
+/// if it may be one.
 fn misnamed(table: &Table, rules: &Rules, data: &[u8], of: Option<usize>) -> Option<Reason> {
     let of = of?;
     let claim = rules.claim(data).ok().flatten()?;
@@ -169,7 +169,7 @@ fn misnamed(table: &Table, rules: &Rules, data: &[u8], of: Option<usize>) -> Opt
     })
 }
 
-/// Return the error, with the index of the byte that rejects a frame at the start of `data`.
+/// Return the error for a reason, with the index of the byte for which `data` is rejected.
 fn reject(frame: &FrameFormat, reason: Reason, data: &[u8]) -> DecodeError {
     let Layout {
         length,

@@ -1,4 +1,4 @@
-//! Encodes values: chooses the variant that allows the values, and builds the frame around them.
+//! Encodes values: chooses the first variant that allows them, and builds the frame.
 
 use alloc::vec::Vec;
 
@@ -8,7 +8,7 @@ use crate::given::{Given, Row, ValueFault};
 use crate::message::{Command, Variant};
 use crate::write::{BadValue, EncodeError, Writer};
 
-/// The options of a caller besides the values.
+/// What a caller chooses besides the values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Choice {
     /// The index of the variant; `None`: the first one that allows the values.
@@ -21,7 +21,8 @@ pub struct Choice {
 ///
 /// # Errors
 /// The format has no such address, the command has no such variant, or a value is not allowed. The
-/// error names the leftmost such value in the first variant with that number of fields.
+/// error names the first value that is not allowed, in the first variant with that number of
+/// fields.
 pub fn encode<V: Given>(
     frame: &FrameFormat,
     command: &Command,

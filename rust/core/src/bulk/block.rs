@@ -11,8 +11,8 @@ use cobotwire_simd::{Pattern, SEEN, Window};
 
 /// The number of positions in a block.
 pub(crate) const BLOCK: usize = 1 << PLACE;
-/// The number of bits of a position in a block. A larger block has more frames of each rare
-/// message; a smaller one leaves more of the cache to other data.
+/// The number of bits of a position in a block. In a larger block there are more frames of each
+/// rare message to decode together; a smaller one leaves more of the cache to other data.
 const PLACE: u32 = 17;
 /// The number of bytes after the last position: more than the longest frame that LEN can express.
 pub(crate) const MARGIN: usize = 1 << 10;

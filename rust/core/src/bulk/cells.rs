@@ -15,7 +15,7 @@ pub enum Numbers {
 
 /// A number in a column of integers.
 pub(crate) trait Cell: Copy + Default {
-    /// Convert a raw value that the column's field allows, so it fits.
+    /// Convert a raw value. It fits, since the column's field allows it.
     fn of(raw: i32) -> Self;
 }
 
@@ -34,7 +34,7 @@ cell!(u8, i8, u16, i16, u32, i32, i64);
 
 /// A column, row after row.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)] // the types document it
+#[allow(missing_docs)] // the variants are named after their types
 pub enum Cells {
     F64(Vec<f64>),
     U8(Vec<u8>),
@@ -153,8 +153,8 @@ impl Cells {
         }
     }
 
-    /// Append a number, given as raw and physical value. The type holds every value that the field
-    /// allows.
+    /// Append a number, given as raw and physical value. The type of the column can hold every
+    /// value that the field allows.
     pub(crate) fn push(&mut self, raw: i64, physical: Value) {
         match self {
             Self::F64(all) => all.push(match physical {

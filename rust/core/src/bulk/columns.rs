@@ -38,7 +38,7 @@ pub(crate) struct Progress<'a> {
     pub(crate) open_noise: Option<u64>,
 }
 
-/// Memory for reading, shared by readers of which only one runs at a time.
+/// Memory for reading. Readers share it, since only one of them runs at a time.
 #[derive(Default)]
 pub(crate) struct Workspace {
     space: Space,
@@ -93,7 +93,7 @@ impl ColumnReader {
         }
     }
 
-    /// Return the reader of a segment that begins at `offset` of its stream.
+    /// Return this reader, for a segment that begins at `offset` of its stream.
     #[must_use]
     pub fn starting_at(mut self, offset: u64) -> Self {
         self.stream.start_at(offset);
@@ -111,7 +111,7 @@ impl ColumnReader {
         self.workers
     }
 
-    /// Reserve memory for the values of `data`, estimated from parts of it.
+    /// Reserve memory for the values of `data`; their number is estimated from samples of it.
     pub fn expect(&mut self, data: &[u8], advise: Advise) {
         let Sorter {
             table, plans, rows, ..
@@ -133,7 +133,7 @@ impl ColumnReader {
         }
     }
 
-    /// Feed bytes; [`ColumnReader::take`] returns the frames that are certain.
+    /// Feed bytes; [`ColumnReader::take`] returns the frames that more bytes cannot change.
     pub fn feed(&mut self, chunk: &[u8]) {
         self.stream.feed_with(self.workers, chunk, &mut self.sorter);
     }
@@ -143,7 +143,7 @@ impl ColumnReader {
         self.stream.flush(&mut self.sorter);
     }
 
-    /// Exchange the memory for reading; call it before and after feeding or flushing.
+    /// Swap the memory for reading with `work`; call this before and after feeding or flushing.
     pub(crate) fn exchange(&mut self, work: &mut Workspace) {
         self.stream.exchange(&mut work.space);
         std::mem::swap(&mut self.sorter.buckets, &mut work.buckets);
@@ -151,7 +151,7 @@ impl ColumnReader {
 
     /// Return what was found since the last [`ColumnReader::take`], in the order of the stream.
     pub(crate) fn found(&mut self) -> Progress<'_> {
-        // Within a block they were found group by group.
+        // Within a block, rejected frames are found group by group.
         self.sorter.rejected.sort_unstable();
         let noise = self.stream.noise();
         Progress {
@@ -165,7 +165,7 @@ impl ColumnReader {
     /// Return everything found since the last call.
     pub fn take(&mut self) -> Columns {
         let mut rejected = std::mem::take(&mut self.sorter.rejected);
-        // Within a block they were found group by group.
+        // Within a block, rejected frames are found group by group.
         rejected.sort_unstable();
         Columns {
             rows: self.sorter.rows.iter_mut().map(Rows::take).collect(),
@@ -180,7 +180,7 @@ impl ColumnReader {
         self.stream.tally()
     }
 
-    /// Return the number of bytes fed that are not accounted for yet.
+    /// Return the number of bytes that may still become part of a frame.
     #[must_use]
     pub fn pending(&self) -> usize {
         self.stream.pending()

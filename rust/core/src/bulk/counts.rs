@@ -24,14 +24,14 @@ pub struct Counted {
     pub first: u64,
 }
 
-/// Counts the messages of a stream, and keeps the positions of their frames if that is wanted.
+/// Counts the messages of a stream, and optionally keeps the positions of their frames.
 pub(crate) struct Counts {
     table: Arc<Table>,
     plans: Arc<Plans>,
     buckets: Buckets,
     id: Part,
     counted: BTreeMap<(u16, Option<usize>), Counted>,
-    /// The positions of the frames.
+    /// The positions of the frames, if they are kept.
     pub(crate) frames: Option<Vec<u64>>,
 }
 

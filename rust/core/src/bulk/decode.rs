@@ -32,7 +32,7 @@ impl Job<'_> {
         {
             return;
         }
-        // Split the group, so that one damaged frame does not make all others be read one by one.
+        // Split the group, so that most frames are still read together if one is not allowed.
         if plan.fields.is_some() && self.frames.len() > FEW {
             let (first, second) = self.frames.split_at(self.frames.len() / 2);
             for frames in [first, second] {
@@ -47,8 +47,8 @@ impl Job<'_> {
         }
     }
 
-    /// Append the frames to the rows of their first variant, column by column. Return false, and
-    /// append nothing, if it does not allow all of them.
+    /// Append the frames to the rows of their first variant, column by column. If the variant does
+    /// not allow all frames, append nothing and return false.
     fn columns(&self, fields: &[FieldPlan], rows: &mut Rows) -> bool {
         let mut all = fields.iter().zip(&mut rows.fields);
         if let Some(failed) = all.position(|(field, cells)| !self.column(field, cells)) {
@@ -70,7 +70,7 @@ impl Job<'_> {
         self.offset + u64::from(at)
     }
 
-    /// Return the address byte of a frame, never `None`: a frame ends in its block.
+    /// Return the address byte of a frame. It is never `None`, since a frame ends in its block.
     fn address(&self, at: u32, place: usize) -> Option<u8> {
         self.block.get(at as usize + place).copied()
     }
@@ -173,7 +173,8 @@ impl Job<'_> {
         })
     }
 
-    /// Count the frames by the index of their variant; `None`: of no variant.
+    /// Call `count` with an index of a variant, a number of frames and the position of the first of
+    /// them. The index is `None` for frames that no variant allows.
     pub(crate) fn count(&self, plan: &Plan, mut count: impl FnMut(Option<usize>, u64, u64)) {
         let fields = plan.fields.as_ref();
         if fields.is_some_and(|fields| fields.iter().all(|field| self.all_allowed(field))) {

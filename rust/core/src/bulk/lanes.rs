@@ -4,8 +4,8 @@
 //! start of the next frame depends on this frame's LEN, and the processor waits for that. Therefore
 //! a block is scanned in lanes. All lanes but the first start at a guess: a position at which a
 //! frame seems to start. If a lane ends exactly where the next lane started, the guess was right,
-//! and the two lanes found what one scan finds. If a guess was wrong, the lanes from there on are
-//! discarded, and the next block starts at the end of the last lane that counts.
+//! and the two lanes found what one scan finds. If a guess was wrong, that lane and those after it
+//! are discarded, and the next block starts at the end of the last lane that is used.
 
 use super::block::{BLOCK, Block, Found, LANES, Look, MOST, Quick};
 use super::spans::Runs;
@@ -14,6 +14,7 @@ use cobotwire_simd::WINDOW;
 
 /// The number of bytes that a guess may examine.
 const GUESSING: usize = 512;
+/// How many bytes ahead of its position a lane asks the processor to load.
 const AHEAD: usize = 512;
 
 /// Memory for what the lanes find in a block: one struct, so that one register can point to it.
@@ -46,10 +47,10 @@ impl Lanes {
         }
     }
 
-    /// Return the first `counted` lanes.
-    pub(crate) fn first(&self, counted: usize) -> impl Iterator<Item = Lane<'_>> + Clone {
+    /// Return the first `used` lanes.
+    pub(crate) fn first(&self, used: usize) -> impl Iterator<Item = Lane<'_>> + Clone {
         let all = self.found.iter().zip(&self.counts);
-        let all = all.zip(self.ids.iter()).zip(&self.noise).take(counted);
+        let all = all.zip(self.ids.iter()).zip(&self.noise).take(used);
         all.map(|(((found, count), ids), noise)| Lane {
             found: found.get(..*count).unwrap_or_default(),
             ids,
@@ -57,10 +58,10 @@ impl Lanes {
         })
     }
 
-    /// Scan a block up to `stop` from its start, into which no earlier frame reaches. Return the
-    /// number of lanes that count, and the end of the last of them.
+    /// Scan a block from its start, which must be no part of an earlier frame, up to `stop`. Return
+    /// the number of lanes whose guess was right, and the end of the last of them.
     #[inline(never)]
-    #[allow(clippy::indexing_slicing)] // by lane, below their number
+    #[allow(clippy::indexing_slicing)] // indexes of lanes are below LANES
     pub(crate) fn run(&mut self, quick: Quick<'_>, data: &Block, stop: usize) -> (usize, usize) {
         let stop = stop.min(BLOCK);
         let start: [usize; LANES] = std::array::from_fn(|lane| match lane {
@@ -111,13 +112,13 @@ impl Lanes {
         }
         self.counts = counts;
         let wrong = (1..LANES).find(|lane| at[lane - 1] != start[*lane]);
-        let counted = wrong.unwrap_or(LANES);
-        (counted, at[counted - 1])
+        let used = wrong.unwrap_or(LANES);
+        (used, at[used - 1])
     }
 }
 
-/// Account for noise: the position `from`, which has this reason, and those after it where no frame
-/// can start. Return the next position.
+/// Record noise: the position `from`, rejected for `reason`, and those after it where no frame can
+/// start. Return the first position where one may start, or `end`.
 #[inline(never)]
 fn pass_noise(
     quick: Quick<'_>,
@@ -128,7 +129,7 @@ fn pass_noise(
     runs: &mut Runs,
 ) -> usize {
     if runs.end_at(from) {
-        // No frame started where one seemed to start.
+        // The noise before ended where a frame could start, but none did.
         return pass_headers(quick, data, from, end, reason, runs);
     }
     let (at, lengths) = next(quick, data, from, end);
@@ -139,8 +140,8 @@ fn pass_noise(
     at
 }
 
-/// Account for noise that is full of headers: for the position `from`, which has this reason, and
-/// all after it up to the next frame. Return its position, or `end`.
+/// Record noise that is full of headers: the position `from`, rejected for `reason`, and all up to
+/// the next frame. Return the position of that frame, or `end`.
 #[inline(never)]
 fn pass_headers(
     quick: Quick<'_>,

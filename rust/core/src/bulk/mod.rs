@@ -1,7 +1,7 @@
 //! Reads whole captures at the speed of memory: the positions of frames, and their values in
 //! columns.
 //!
-//! It finds the same frames as [`crate::Framer`], but searches blocks of 64 KiB and then decodes
+//! It finds the same frames as [`crate::Framer`], but searches blocks of 128 KiB and then decodes
 //! all frames of a message together, instead of one frame after the other.
 
 mod block;

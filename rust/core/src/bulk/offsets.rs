@@ -56,14 +56,14 @@ impl OffsetReader {
         self.workers
     }
 
-    /// Reserve memory for the frames of `data`, estimated from parts of it.
+    /// Reserve memory for the frames of `data`; their number is estimated from samples of it.
     pub fn expect(&mut self, data: &[u8], advise: Advise) {
         let rules = self.stream.rules();
         let counts = expected(rules, rules.legal().groups().len(), data);
         reserve(&mut self.collected.frames, counts.iter().sum(), advise);
     }
 
-    /// Feed bytes; [`OffsetReader::take`] returns the frames that are certain.
+    /// Feed bytes; [`OffsetReader::take`] returns the frames that more bytes cannot change.
     pub fn feed(&mut self, chunk: &[u8]) {
         self.stream
             .feed_with(self.workers, chunk, &mut self.collected);
@@ -88,7 +88,7 @@ impl OffsetReader {
         self.stream.tally()
     }
 
-    /// Return the number of bytes fed that are not accounted for yet.
+    /// Return the number of bytes that may still become part of a frame.
     #[must_use]
     pub fn pending(&self) -> usize {
         self.stream.pending()

@@ -43,7 +43,7 @@ pub(crate) struct Plan {
     pub(crate) variants: Vec<VariantId>,
     /// The index of the first variant's rows in the rows of all variants.
     pub(crate) rows: usize,
-    /// How to read the first variant column by column, if that is possible.
+    /// How to read the first variant column by column; `None`: it has a selector or a text.
     pub(crate) fields: Option<Vec<FieldPlan>>,
 }
 
@@ -56,7 +56,7 @@ pub(crate) struct FieldPlan {
     pub(crate) numbers: Vec<Number>,
     /// Which raw values are allowed.
     pub(crate) allowed: Allowed,
-    /// Its fast reader, if its numbers have the same width and order.
+    /// Its fast reader, if that can handle its numbers.
     pub(crate) words: Option<Words>,
     /// Its reader for rows of six pairs of bytes.
     pub(crate) six: Option<Six>,
@@ -76,7 +76,7 @@ impl Plan {
     }
 }
 
-/// Return the fields of a variant, if it has no selector.
+/// Return how to read the fields of a variant, if it has no selector and no text.
 fn plain_fields(table: &Table, id: VariantId, variant: &Variant) -> Option<Vec<FieldPlan>> {
     let data = table.frame().data_start(id.direction);
     let plan = |(index, field): (usize, &Field)| {
@@ -117,7 +117,7 @@ pub(crate) enum Allowed {
     All,
     /// The field is one byte; these are allowed.
     Bytes(Box<[bool; 256]>),
-    /// The raw values between these bounds.
+    /// The raw values within these bounds.
     Within(Bounds),
     /// The raw values that this field allows.
     Some(Box<Field>),

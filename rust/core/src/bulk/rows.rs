@@ -7,7 +7,7 @@ use crate::table::Table;
 /// All frames of one variant, in the order of the stream.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rows {
-    /// Which variant.
+    /// The variant.
     pub variant: VariantId,
     /// Where each frame starts.
     pub offsets: Vec<u64>,
@@ -33,7 +33,7 @@ impl Rows {
         }
     }
 
-    /// Take over the memory of columns of the same types.
+    /// Reuse the memory of `old`, if its columns have the same types.
     pub(crate) fn reuse(&mut self, old: Self) {
         let alike = |(new, old): (&Cells, &Cells)| {
             std::mem::discriminant(new) == std::mem::discriminant(old)

@@ -11,7 +11,8 @@ const WORTH: usize = 1 << 20;
 const PARTS: usize = 16;
 const PART_SIZE: usize = 1 << 14;
 
-/// Estimate the number of frames of each group in `data`; the estimate is rarely too low.
+/// Estimate the number of frames of each group in `data`; the estimate is rarely too low. It is
+/// empty for small input.
 pub(crate) fn expected(rules: &Rules, groups: usize, data: &[u8]) -> Vec<usize> {
     if data.len() < WORTH {
         return Vec::new();

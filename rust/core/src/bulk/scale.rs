@@ -1,10 +1,10 @@
-//! Scales without a division.
+//! Turns raw values into physical values without a division.
 //!
 //! The physical value is the double nearest to `raw * multiply / divide`. A division computes it,
-//! but costs more than everything else. Multiplying by the double nearest to `multiply / divide` is
-//! not exact: for hundredths, the last bit is wrong for 8,779 of 65,536 raw values. A factor in two
-//! parts is exact: the product of the high part is exact, since it has few bits; the low part adds
-//! the rest; only the sum is rounded. The constructor verifies this for every raw value.
+//! but takes longer than everything else. Multiplying by the double nearest to `multiply / divide`
+//! is not exact: for hundredths, the last bit is wrong for 8,779 of 65,536 raw values. A factor in
+//! two parts is exact: the product of the high part is exact, since it has few bits; the low part
+//! adds the rest; only the sum is rounded. The constructor verifies this for every raw value.
 
 use crate::number::Number;
 
@@ -19,11 +19,12 @@ pub(crate) struct Scale {
     pub(crate) exact: bool,
 }
 
-/// The bits that the high part leaves unused, so that its product with a two-byte number is exact.
+/// The low bits that are zero in the high part, so that its product with a two-byte number is
+/// exact.
 const SPARE: u64 = (1 << 17) - 1;
 
 impl Scale {
-    /// No scale.
+    /// The scale of a number that has none.
     pub(crate) const ONE: Self = Self {
         multiply: 1.0,
         divide: 1.0,

@@ -1,4 +1,4 @@
-//! Searches contiguous bytes for frames, block by block, and accounts for the rest.
+//! Searches contiguous bytes for frames, block by block, and records the rest as noise.
 
 use super::block::{BLOCK, Block, Found, LANES, MARGIN, Quick};
 use super::lanes::Lanes;
@@ -11,7 +11,8 @@ use crate::scan::{Sink, scan};
 use crate::tally::Tally;
 use cobotwire_simd::SEEN;
 
-/// A shorter block is scanned position by position: its lanes would need more memory than the block.
+/// A shorter block is scanned position by position: its lanes would need more memory than the
+/// bytes.
 const WORTH: usize = 1 << 15;
 
 /// Receives the frames of a stream in order, in portions.
@@ -77,9 +78,9 @@ impl Search {
         self.noise.clear();
     }
 
-    /// Search the positions of `data` up to `stop`; its first byte is at `offset` in the stream.
-    /// Return the first position that was not searched: it waits for more bytes, or is the end of
-    /// the last frame, which may be after `stop`. At the end of the stream no position waits.
+    /// Search the positions of `data`, which is at `offset` in the stream, up to `stop`. Return the
+    /// first position that was not searched: more bytes must decide it, or it is the end of the
+    /// last frame, which may be after `stop`. With `at_end`, no more bytes come.
     pub(crate) fn through(
         &mut self,
         offset: u64,
@@ -134,10 +135,10 @@ impl Search {
                 }
             };
             let lanes = lanes.get_or_insert_with(Lanes::new);
-            let (counted, end) = lanes.run(quick, block, stop);
+            let (used, end) = lanes.run(quick, block, stop);
             let start = offset + at as u64;
             let mut found = [&[][..]; LANES];
-            for (found, lane) in found.iter_mut().zip(lanes.first(counted)) {
+            for (found, lane) in found.iter_mut().zip(lanes.first(used)) {
                 *found = lane.found;
                 for (total, count) in self.tally.frames.iter_mut().zip(lane.ids) {
                     *total += u64::from(*count);
@@ -160,8 +161,8 @@ impl Search {
         at_end: bool,
         collect: &mut impl Collect,
     ) -> usize {
-        // A frame that starts before `stop` must end in the block. The bytes that a stream has kept are
-        // fewer than that, so one call scans them all.
+        // A frame that starts before `stop` must end in the block. A stream keeps fewer bytes than
+        // a block has, so one call scans all of them.
         let stop = stop.min(BLOCK.min((BLOCK + MARGIN).saturating_sub(self.rules.longest())));
         if stop == 0 {
             return 0;

@@ -8,7 +8,7 @@ use crate::tally::Tally;
 pub struct Spans {
     /// The position of each span.
     pub offsets: Vec<u64>,
-    /// The number of its bytes.
+    /// The number of bytes of each span.
     pub sizes: Vec<u64>,
 }
 
@@ -17,12 +17,12 @@ pub struct Spans {
 pub(crate) struct Noise {
     /// The start and the end of the span that may continue.
     open: Option<(u64, u64)>,
-    /// The end of a span that a flush ended, if no frame has come since.
+    /// The end of a span that a flush ended, until it is known that a frame follows.
     flushed: Option<u64>,
     closed: Spans,
 }
 
-/// The noise of one lane or scan, before it is known whether the lane counts.
+/// The noise of one lane or scan, before it is known whether the results of the lane are used.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Runs {
     /// The start and the end of each span; a frame lies between any two.
@@ -36,7 +36,7 @@ impl Runs {
         self.reasons = Default::default();
     }
 
-    /// Add noise from `from` to before `to`, which may touch the last noise.
+    /// Add the noise from `from` up to, but not including, `to`. It may touch the last span.
     #[inline]
     pub(crate) fn span(&mut self, from: usize, to: usize) {
         let (from, to) = (from as u32, to as u32);
@@ -61,7 +61,7 @@ impl Runs {
 }
 
 impl Noise {
-    /// Return no noise; it reuses the memory of `old` spans.
+    /// Return an empty collector, which reuses the memory of `old` spans.
     pub(crate) fn new(mut old: Spans) -> Self {
         old.offsets.clear();
         old.sizes.clear();
@@ -134,8 +134,8 @@ impl Noise {
         *self = Self::new(self.take());
     }
 
-    /// Account for everything before stream offset `done`: a frame followed each span that ends
-    /// earlier.
+    /// Take note that everything before stream offset `done` was scanned: if the open span ends
+    /// earlier, a frame follows it.
     pub(crate) fn settle(&mut self, done: u64, tally: &mut Tally) {
         if self.open.is_none_or(|(_, end)| end < done) {
             self.close(done, tally);
@@ -150,7 +150,7 @@ impl Noise {
         }
     }
 
-    /// End the noise at a flush, although more noise may touch it.
+    /// End the open span at a flush; noise after it begins a new span.
     pub(crate) fn end(&mut self) {
         if let Some((from, to)) = self.open.take() {
             self.closed.offsets.push(from);

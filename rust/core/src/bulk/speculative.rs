@@ -5,8 +5,8 @@
 //! into its own memory, and then waits until the scan of the stream has reached the piece. A scan
 //! has no state: if the scan of the stream reaches exactly the guessed position, it would find the
 //! same frames as the thread. If not, the thread reads the piece again, from the position at which
-//! the scan stands. Then it appends what it found to the results, and hands over to the thread with
-//! the next piece. So the results are in the order of the stream, even if a guess was wrong.
+//! the scan stands. Then it appends what it found to the results, and passes the turn to the thread
+//! with the next piece. So the results are in the order of the stream, even if a guess was wrong.
 
 use std::hint::spin_loop;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
@@ -19,15 +19,15 @@ use cobotwire_simd::SEEN;
 
 /// The number of bytes that a guess may examine.
 const GUESSING: usize = 512;
-/// How often a thread checks whether its turn has come, before it sleeps: waking another thread
-/// costs both of them more.
+/// How often a thread checks whether its turn has come before it sleeps. To wake a sleeping thread
+/// takes both threads longer than these checks.
 const CHECKS: usize = 5_000;
 /// More threads do not help, since the threads append their results one after another.
 const MOST: usize = 16;
 /// For less input, starting threads costs more than it saves.
 const WORTH: usize = 1 << 23;
-/// The bytes between two cuts: two blocks. Longer columns are appended faster, but until then they
-/// have to stay in the cache of a core.
+/// The bytes between two cuts: two blocks. The longer the columns of a piece are, the faster they
+/// are appended, as long as they fit into the cache of a core until then.
 const STRIDE: usize = 2 * BLOCK - GUESSING;
 
 /// The number of threads that read, and the pieces that they read.
@@ -67,7 +67,8 @@ impl Workers {
         }
     }
 
-    /// Return the number of threads for input of that size, which has this number of pieces.
+    /// Return the number of threads for input of this size, which is cut into this number of
+    /// pieces.
     fn for_input(self, size: usize, pieces: usize) -> usize {
         let count = self.count.min(MOST).min(pieces);
         match self.stride {
@@ -129,7 +130,7 @@ impl<'a> Cuts<'a> {
     }
 }
 
-/// What the threads hand over to each other: the search of the stream, and its results.
+/// What the threads pass on to each other: the search of the stream, and its results.
 struct Turn<'a, C> {
     search: &'a mut Search,
     collect: &'a mut C,
@@ -235,7 +236,7 @@ struct Reader<C> {
 }
 
 impl<C: Share> Reader<C> {
-    /// Read every piece that is this thread's turn.
+    /// Read every piece that is assigned to this thread.
     fn read(&mut self, cuts: Cuts<'_>, seat: &Seat<'_, C>) {
         for piece in (seat.index..cuts.pieces).step_by(seat.count) {
             let start = cuts.start(piece, &self.search.rules);

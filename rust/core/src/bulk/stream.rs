@@ -1,4 +1,4 @@
-//! Scans a stream in bulk: first the seam between two calls, then a chunk.
+//! Scans a stream in bulk: first the seam between two chunks, then the rest of the new chunk.
 
 use super::search::{Collect, Search, Space};
 use super::spans::{Noise, Spans};
@@ -7,7 +7,7 @@ use crate::rules::Rules;
 use crate::seam::Seam;
 use crate::tally::Tally;
 
-/// Finds the frames of a stream and accounts for the rest.
+/// Finds the frames of a stream, and the noise between them.
 #[derive(Clone)]
 pub(crate) struct Stream {
     search: Search,
@@ -22,13 +22,13 @@ impl Stream {
         }
     }
 
-    /// Reuse the memory of `old` noise. Nothing has been fed yet.
+    /// Reuse the memory of `old` noise. Call this before the first bytes are fed.
     pub(crate) fn reusing(mut self, old: Spans) -> Self {
         self.search.noise = Noise::new(old);
         self
     }
 
-    /// Count offsets from `offset` on. Nothing has been fed yet.
+    /// Count offsets from `offset` on. Call this before the first bytes are fed.
     pub(crate) fn start_at(&mut self, offset: u64) {
         self.seam = Seam::at(offset);
     }
@@ -45,7 +45,7 @@ impl Stream {
         &self.search.rules
     }
 
-    /// Exchange the memory for scanning: streams that are read in turn need it only once.
+    /// Swap the memory for scanning with `space`: streams that are read in turn can share it.
     pub(crate) fn exchange(&mut self, space: &mut Space) {
         std::mem::swap(&mut self.search.space, space);
     }

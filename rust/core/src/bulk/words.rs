@@ -14,8 +14,8 @@ const MOST: usize = 6;
 pub(crate) struct Words {
     width: usize,
     count: usize,
-    /// Added before a number is cut to its width, and subtracted afterwards, to apply the sign
-    /// rule.
+    /// Added to a number before its high bits are masked off, and subtracted after that: this
+    /// applies the sign rule.
     bias: [i32; MOST],
     scales: [Scale; MOST],
 }
@@ -41,8 +41,8 @@ impl Words {
         };
         let places = words.bias.iter_mut().zip(&mut words.scales);
         for (number, (bias, scale)) in numbers.iter().zip(places) {
-            // The threshold of the sign rule is limited to the width. At the limits, no raw value is
-            // negative, or all are.
+            // A threshold outside of the width is replaced by the nearest one with the same effect:
+            // no raw value is negative, or all are.
             *bias = i32::try_from(most - number.signed_at.clamp(-1, most)).ok()?;
             *scale = Scale::new(number);
         }
@@ -122,12 +122,12 @@ impl Words {
     }
 }
 
-/// Return the rules of six numbers, followed by two others.
+/// Return the six elements, followed by `rest` twice.
 fn padded<T: Copy>([a, b, c, d, e, f]: [T; MOST], rest: T) -> [T; 8] {
     [a, b, c, d, e, f, rest, rest]
 }
 
-/// The least raw value of each number, and how far the largest is from it.
+/// The least raw value of each number, and the difference between the largest and the least one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bounds([(i32, u32); MOST]);
 

@@ -3,12 +3,12 @@
 use super::body::Order;
 use super::damage::{Damage, Fault};
 
-/// Wireshark's own limit; a longer block counts as damage.
+/// The limit of Wireshark; a longer block counts as damage.
 const LARGEST: u32 = 16 * 1024 * 1024;
 const SMALLEST: u32 = 12;
 const SMALLEST_SECTION: u32 = 28;
 
-/// The kind of a section's block, in either byte order.
+/// The kind of the block that begins a section. It reads the same in either byte order.
 pub(crate) const SECTION: u32 = 0x0A0D_0D0A;
 const BYTE_ORDER_MAGIC: u32 = 0x1A2B_3C4D;
 
@@ -19,7 +19,7 @@ pub(crate) struct Block<'a> {
     pub(crate) offset: u64,
     pub(crate) kind: u32,
     pub(crate) order: Order,
-    /// Everything between its two lengths.
+    /// Everything between its two length fields.
     pub(crate) body: &'a [u8],
 }
 
@@ -31,7 +31,7 @@ pub(crate) enum Step<'a> {
     Needs(usize),
 }
 
-/// Where cutting stands.
+/// Cuts a file into blocks, one after the other.
 #[derive(Default)]
 pub(crate) struct Cutter {
     /// The position of the next block in the file.

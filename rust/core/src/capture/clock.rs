@@ -1,9 +1,10 @@
-//! Knows the time of each byte of a stream that is not accounted for yet.
+//! Maps offsets of a stream to the times at which the bytes were received, until they are needed no
+//! more.
 
-/// How many pieces a search passes one by one before it halves the rest.
+/// How many pieces are searched one by one before a binary search begins.
 const NEAR: usize = 8;
 
-/// The pieces of a stream, each received at once: where it starts, and its time.
+/// The pieces of a stream: where each starts, and when its bytes were received, all at once.
 #[derive(Debug, Default)]
 pub(crate) struct Clock {
     starts: Vec<u64>,
@@ -14,7 +15,7 @@ impl Clock {
     /// Add the piece that starts at the end of the stream.
     #[inline]
     pub(crate) fn add(&mut self, start: u64, time: i64) {
-        // An empty piece has no bytes, so the piece after it takes its place.
+        // The last piece is empty if the next one starts at the same offset; it is replaced.
         match (self.starts.last(), self.times.last_mut()) {
             (Some(last), Some(last_time)) if *last == start => *last_time = time,
             _ => {
@@ -24,7 +25,7 @@ impl Clock {
         }
     }
 
-    /// Append the times of bytes, which are in the order of the stream.
+    /// Append the times of the bytes at `offsets`, which ascend.
     pub(crate) fn stamp(&self, offsets: &[u64], times: &mut Vec<i64>) {
         let mut at = 0;
         times.reserve(offsets.len());
@@ -40,14 +41,15 @@ impl Clock {
         self.times.get(at).copied().unwrap_or_default()
     }
 
-    /// Forget the pieces before the one with this byte, which may not have come yet.
+    /// Forget the pieces before the one with the byte at `offset`, which may lie beyond the
+    /// received bytes.
     pub(crate) fn forget_before(&mut self, offset: u64) {
         let at = self.piece(0, offset);
         self.starts.drain(..at);
         self.times.drain(..at);
     }
 
-    /// Return the index of the last piece that starts at or before `offset`, from `at` on.
+    /// Return the index of the last piece that starts at or before `offset`; piece `at` does.
     #[inline]
     fn piece(&self, at: usize, offset: u64) -> usize {
         let later = self.starts.get(at + 1..).unwrap_or_default();

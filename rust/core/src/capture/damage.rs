@@ -21,7 +21,7 @@ pub enum Fault {
     NoInterface(u32),
     /// A packet has neither a time nor a direction.
     NoTime,
-    /// The file describes more interfaces than a reader takes.
+    /// The file describes more interfaces than a reader accepts.
     TooManyInterfaces,
     /// A time in nanoseconds since 1970 is beyond 64 bits.
     TimeRange,

@@ -12,7 +12,8 @@ const OFFSET: u16 = 14;
 const MICROSECONDS: u8 = 6;
 const SECOND: u128 = 1_000_000_000;
 
-/// An interface that a file describes; texts are as the file has them.
+/// An interface that a file describes. Its texts are the bytes of the file, not checked to be
+/// UTF-8.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Interface {
     /// Its name: a port or URL.
@@ -64,7 +65,7 @@ impl Format {
         Ok((format, interface))
     }
 
-    /// Return a time stamp in nanoseconds since 1970; finer fractions are cut off.
+    /// Return a time stamp in nanoseconds since 1970; fractions of a nanosecond are cut off.
     #[inline]
     pub(crate) fn nanoseconds(&self, high: u32, low: u32) -> Result<i64, Fault> {
         let stamp = u64::from(high) << 32 | u64::from(low);

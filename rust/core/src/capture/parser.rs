@@ -27,9 +27,9 @@ pub(crate) struct Parser {
     pub(crate) application: Vec<u8>,
     /// The interfaces of all sections.
     pub(crate) interfaces: Vec<Interface>,
-    /// For each of them, whether its statistics have come.
+    /// For each of them, whether its statistics have been read.
     finished: Vec<bool>,
-    /// The formats of the interfaces of this section, which come last among all.
+    /// The formats of the interfaces of this section, which are the last ones of `interfaces`.
     formats: Vec<Format>,
 }
 

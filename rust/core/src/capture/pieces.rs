@@ -5,7 +5,7 @@ use super::packet::Packet;
 
 const MARK: &[u8] = b"in pieces: ";
 const SEPARATOR: &[u8] = b"; ";
-/// The most digits that a number can have: it then fits 64 bits.
+/// The most digits of a number, so that it fits 64 bits.
 const DIGITS: usize = 19;
 
 /// Bytes of a packet that arrived together.
@@ -16,8 +16,8 @@ pub(crate) struct Piece {
     pub(crate) time: i64,
 }
 
-/// Put the pieces of a packet into `pieces`. They come from the last part of its comment that lists
-/// all of its bytes; if no part does, `pieces` is empty.
+/// Put the pieces of a packet into `pieces`, as the last list in its comment states them that
+/// covers all of its bytes. If there is no such list, `pieces` is empty.
 #[inline]
 pub(crate) fn read(packet: &Packet<'_>, pieces: &mut Vec<Piece>) -> Result<(), Fault> {
     pieces.clear();
@@ -32,7 +32,7 @@ pub(crate) fn read(packet: &Packet<'_>, pieces: &mut Vec<Piece>) -> Result<(), F
     Ok(())
 }
 
-/// Return the sizes of the pieces, and how many nanoseconds each came after the first.
+/// Return the sizes of the pieces, and how many nanoseconds after the packet's time each came.
 fn last_list(comment: &[u8], size: usize) -> Vec<(u64, u64)> {
     let mut last = Vec::new();
     for part in parts(comment) {

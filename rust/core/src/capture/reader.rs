@@ -72,8 +72,8 @@ impl CaptureReader {
         }
     }
 
-    /// Feed the next bytes of the file; [`CaptureReader::take`] returns what is certain. After
-    /// damage or the end, more bytes are ignored.
+    /// Feed the next bytes of the file; [`CaptureReader::take`] returns what more bytes cannot
+    /// change. After damage or the end, more bytes are ignored.
     pub fn feed(&mut self, chunk: &[u8], decoders: &mut impl Decoders) {
         if self.ended {
             return;
@@ -139,7 +139,7 @@ impl CaptureReader {
         self.size
     }
 
-    /// Complete the block that waits; return the bytes after it.
+    /// Complete the block that the last chunk began; return the bytes after it.
     fn complete<'a>(
         &mut self,
         chunk: &'a [u8],
@@ -242,7 +242,7 @@ struct Streams {
     work: Workspace,
     /// The bytes that were gathered since all streams were decoded.
     gathered: usize,
-    /// The last byte of every waiting stream came at this time or later.
+    /// No waiting stream received its last byte earlier than this.
     oldest: Option<i64>,
 }
 

@@ -47,7 +47,7 @@ pub(crate) struct Stream {
     /// The number of bytes in all packets.
     size: u64,
     clock: Clock,
-    /// The start and the time of the noise that may continue: the clock forgets it.
+    /// The start and the time of the noise that may continue; the clock may have forgotten them.
     noise: Option<(u64, i64)>,
     times: Times,
     /// The time of the last piece.
@@ -72,7 +72,7 @@ impl Stream {
         }
     }
 
-    /// Add the next packet, with its pieces if it has several.
+    /// Add the next packet; all of its bytes arrived at its time.
     #[inline]
     pub(crate) fn add(&mut self, packet: &Packet<'_>, work: &mut Workspace) {
         self.clock.add(self.size, packet.time);
@@ -81,7 +81,7 @@ impl Stream {
         self.gather(packet.data, work);
     }
 
-    /// Add the next packet, which came in pieces.
+    /// Add the next packet, which arrived in pieces.
     pub(crate) fn add_pieces(
         &mut self,
         packet: &Packet<'_>,

@@ -1,15 +1,17 @@
-//! Whether the line echoes: a loop, some adapters and a transponder send our own bytes back.
+//! Detects a transport that echoes: a loopback and some adapters send our own bytes back.
 //!
-//! A few requests are legal replies too. So the first copy of a request is only a candidate. If
-//! another reply follows, that one counts. If none does by the deadline, the candidate counts,
-//! unless the line is known to echo: it has sent back a request that cannot be a reply.
+//! The bytes of a few requests are legal replies too. So the first copy of such a request is only a
+//! candidate. If another reply follows, that one is taken. If none does by the deadline, the
+//! candidate is taken, unless the transport is known to echo: it has sent back a request that
+//! cannot be a reply.
 
 use alloc::vec::Vec;
 
 use super::text::find;
 use super::{Request, SeenFrame};
 
-/// A request that was sent; `copies` of it may begin at `offset` of the stream or later.
+/// A request that was sent. Up to `copies` echoes of it may begin at `offset` of the stream or
+/// later.
 #[derive(Clone, Debug)]
 struct Sent {
     frame: Vec<u8>,
@@ -26,11 +28,11 @@ impl Sent {
     }
 }
 
-/// Looks for copies of the last request and of the last one-way request, which may go out while
-/// another request waits for its reply.
+/// Looks for copies of the last request, and of the last one-way request, which may be sent while
+/// the other one waits for its reply.
 #[derive(Clone, Debug, Default)]
 pub(super) struct EchoDetector {
-    /// Whether the line was seen to echo.
+    /// Whether the transport was seen to echo.
     pub(super) proven: bool,
     /// The last request, and the last one-way request.
     sent: [Option<Sent>; 2],
@@ -38,7 +40,7 @@ pub(super) struct EchoDetector {
 }
 
 impl EchoDetector {
-    /// Note a request that goes out; its copy can begin at `offset` of the stream.
+    /// Note a request that is sent; its copy may begin at `offset` of the received stream or later.
     pub(super) fn sent(&mut self, request: &Request, offset: u64, is_one_way: bool) {
         let [last, one_way] = &mut self.sent;
         *(if is_one_way { one_way } else { last }) = Some(Sent {
@@ -49,7 +51,7 @@ impl EchoDetector {
         self.noise.clear();
     }
 
-    /// Note that the last request that waits for a reply goes out once more.
+    /// Note that the last request with a reply is sent once more.
     pub(super) fn sent_again(&mut self) {
         if let [Some(last), _] = &mut self.sent {
             last.copies += 1;
@@ -57,7 +59,7 @@ impl EchoDetector {
         self.noise.clear();
     }
 
-    /// Look for copies in noise: most requests are not legal replies, so they come as noise.
+    /// Look for copies in noise: most requests are not legal replies, so their echoes are noise.
     pub(super) fn add_noise(&mut self, offset: u64, data: &[u8]) {
         let watched = || self.sent.iter().flatten();
         let first = watched().map(|sent| sent.offset).min();
@@ -80,7 +82,7 @@ impl EchoDetector {
     }
 }
 
-/// Return the part of some bytes, which begin at `offset` of the stream, from `first` on.
+/// Return the bytes from position `first` of the stream on; `data` begins at `offset`.
 pub(super) fn since(first: u64, offset: u64, data: &[u8]) -> &[u8] {
     let skipped = usize::try_from(first.saturating_sub(offset)).unwrap_or(usize::MAX);
     data.get(skipped..).unwrap_or_default()
