@@ -1,4 +1,4 @@
-//! Fields: the numbers of a part of a message, and the raw values that they may hold.
+//! Fields of messages: their numbers, and the raw values that these may hold.
 
 use alloc::vec::Vec;
 
@@ -28,7 +28,7 @@ pub enum Shape {
     Numbers,
     /// Bytes.
     Bytes,
-    /// Text, with the byte that fills its field.
+    /// Text, with the byte that pads it to the size of its field, if any.
     Text(Encoding, Option<u8>),
 }
 
@@ -43,7 +43,7 @@ pub struct Field {
     pub choices: Vec<i64>,
     /// Index of the field in the same variant whose raw value picks the case.
     pub selector: Option<usize>,
-    /// Its cases; without a selector only the first one counts.
+    /// Its cases; without a selector it has only the first one.
     pub cases: Vec<Case>,
     /// How its numbers form a value.
     pub shape: Shape,

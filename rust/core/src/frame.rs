@@ -6,7 +6,7 @@ use crate::check::Check;
 use crate::direction::Direction;
 use crate::number::Order;
 
-/// Where the fixed parts of a frame are, between its header and its data. LEN or id is the last.
+/// Where the fixed parts of a frame are, between its header and its data. The last is LEN or id.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
     /// The offset of the address byte, if frames have one.
@@ -19,7 +19,7 @@ pub struct Layout {
     pub data_at: usize,
     /// The number of bytes that LEN does not count.
     pub overhead: usize,
-    /// Whether replies carry a command id. If not, their data start in its place.
+    /// Whether replies carry a command id. If not, their data starts at the offset of the id.
     pub reply_has_id: bool,
 }
 
@@ -48,7 +48,7 @@ impl Part {
         self.at + if self.wide { 2 } else { 1 }
     }
 
-    /// Return its number in a frame; `None` if it has not come yet.
+    /// Return its number in a frame; `None` if the frame is too short.
     #[inline]
     #[must_use]
     pub fn read(self, frame: &[u8]) -> Option<u16> {
@@ -153,7 +153,7 @@ impl FrameFormat {
         data.unwrap_or_default()
     }
 
-    /// Append the start of a frame, up to its data; the frame is empty.
+    /// Append the start of a frame, up to its data, to an empty buffer.
     #[inline]
     pub(crate) fn start(
         &self,
@@ -195,7 +195,7 @@ impl<'a> Frame<'a> {
         self.bytes
     }
 
-    /// Return the number in the place of the command id.
+    /// Return the number at the offset of the command id.
     #[must_use]
     pub fn id(self) -> u16 {
         self.id

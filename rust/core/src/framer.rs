@@ -1,10 +1,10 @@
-//! Cuts frames out of a byte stream and accounts for every other byte.
+//! Cuts frames out of a byte stream, and reports every other byte as noise.
 //!
 //! Either a frame starts at position i, or the byte at i is noise. The first byte that contradicts
 //! a candidate rejects it. The scan then continues at i + 1: it never skips the bytes that a false
 //! header claims. A candidate that more bytes could complete waits. Validating a candidate reads at
-//! most the bytes of the longest frame, once (for a CRC or sum, when all its bytes have come), and
-//! no position is rejected twice. So the work is linear in the size of any input.
+//! most as many bytes as the longest frame has; a CRC or sum is computed only when all its bytes
+//! have come. No position is rejected twice. So the work is linear in the size of any input.
 
 use core::mem;
 
@@ -87,7 +87,7 @@ impl Framer {
         Some((offset, frame))
     }
 
-    /// Feed bytes; pass the events that are certain to `sink`.
+    /// Feed bytes; pass the events that more bytes cannot change to `sink`.
     pub fn feed(&mut self, chunk: &[u8], sink: impl FnMut(Event<'_>)) {
         self.cut(chunk, false, sink);
     }
@@ -151,7 +151,8 @@ impl<'a, S: FnMut(Event<'_>)> Sink<'a> for Pass<'_, S> {
     fn noise(&mut self, from: usize, to: usize, reason: Reason) {
         let (from, to) = (self.base + from, self.base + to);
         match &mut self.run {
-            // Only at the seam, two scans report parts of one run of noise.
+            // Two scans can report parts of one run of noise, but only where old and new bytes
+            // meet.
             Some((_, end, current)) if *current == reason => *end = to,
             _ => {
                 self.close();

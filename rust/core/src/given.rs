@@ -45,16 +45,16 @@ impl ValueFault {
 /// Why a value is not a number, or not a row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unread<E> {
-    /// It is not of that kind.
+    /// It is of another type, or not allowed.
     Fault(ValueFault),
-    /// It is an integer beyond all bounds and choices.
+    /// It is an integer of more than 64 bits, beyond all bounds and choices.
     Beyond,
     /// Converting it raised an error of its own, which is passed on.
     Foreign(E),
 }
 
-/// A value of the caller. The encoder converts a value only when it reaches it: a conversion may
-/// run the caller's code, and the leftmost mistake must be reported.
+/// A value of the caller. The encoder converts each value only when its turn comes, since a
+/// conversion may run the caller's code, and the leftmost mistake must be reported.
 pub trait Given: Sized {
     /// The error of a conversion, other than a wrong type.
     type Error;
@@ -73,13 +73,14 @@ pub trait Given: Sized {
     /// It is not a real number.
     fn real(&self) -> Result<f64, Unread<Self::Error>>;
 
-    /// Convert it to a row that does not change afterwards.
+    /// Convert it to a row that the caller's code cannot change afterwards.
     ///
     /// # Errors
     /// It is not a row.
     fn row(&self) -> Result<Self::Row, Unread<Self::Error>>;
 
-    /// Return whether the caller leaves it to the encoder to count the elements.
+    /// Return whether this is the placeholder (`...` in Python) for a count that the encoder fills
+    /// in.
     fn counted(&self) -> bool;
 
     /// Return the bytes of a bytes-like object; `None`: it is something else.

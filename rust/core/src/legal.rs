@@ -41,9 +41,10 @@ pub(crate) struct Legal {
     headings: Arc<Headings>,
     /// The groups of frames with a LEN or an id above 255, by LEN and id.
     wide: Arc<Map<(u16, u16), u16>>,
-    /// The groups of frames without an id, by LEN; they have no entry elsewhere.
+    /// The groups of frames without an id, by LEN.
     without_id: Arc<Map<u16, u16>>,
-    /// The variants that share an id and a LEN; the first one that allows a frame's values counts.
+    /// The variants that share an id and a LEN; a frame is the first of them that allows its
+    /// values.
     groups: Arc<[Vec<VariantId>]>,
     known: Arc<Set>,
     /// The LENs of all frames. Any other LEN rejects a candidate before its id has come.
@@ -102,8 +103,8 @@ impl Legal {
         }
     }
 
-    /// Return the same index, but accept ids that the table lacks. Their LEN must be legal for
-    /// another id, or lie between `least` and `most`.
+    /// Accept frames with ids that the table lacks, if their LEN is legal for another id or lies
+    /// between `least` and `most`.
     pub(crate) fn permissive(mut self, least: u16, most: u16) -> Self {
         let mut lengths = Set::clone(&self.lengths);
         (least..=most).for_each(|length| lengths.add(length));
@@ -122,7 +123,7 @@ impl Legal {
         heading(cell.unwrap_or(BAD_LENGTH))
     }
 
-    /// Return the same for any LEN and id.
+    /// Return what a header with a LEN and an id of any size can be.
     pub(crate) fn wide_heading(&self, length: u16, id: u16) -> Heading {
         if let (Ok(length), Ok(id)) = (u8::try_from(length), u8::try_from(id)) {
             return self.heading(length, id);
@@ -161,7 +162,7 @@ impl Legal {
         self.lengths.ends()
     }
 
-    /// Return all groups; a heading's number is the index here.
+    /// Return all groups; the number in a [`Heading::Group`] is the index of one.
     pub(crate) fn groups(&self) -> &[Vec<VariantId>] {
         &self.groups
     }

@@ -4,14 +4,13 @@
 //! a [`Framer`] cuts frames out of a stream. This crate knows no command by name, does no I/O,
 //! reads no clock and writes no error texts: an error is a kind and a position. The Python
 //! reference in `python/cobotwire/codec/reference` is the specification; this crate returns the
-//! same results. An [`exchange::Exchange`] matches requests and replies on a line;
+//! same results. An [`exchange::Exchange`] matches requests and replies on a transport;
 //! `python/cobotwire/session` is its specification.
 //!
 //! Without the feature `std`, which is on by default, it needs only `alloc`. Then a
-//! [`Table`] stays in the thread that made it, and there is no bulk decoding, no reading of captures
-//! and no summary. Without the feature `exchange`, also on by default, there is no
-//! [`exchange`].
-//! An edition's table takes 0.6 to 0.9 MB, and its construction 128 KiB of stack.
+//! [`Table`] stays in the thread that made it, and there is no bulk decoding, no reading of
+//! captures and no summary. Without the feature `exchange`, also on by default, there is no
+//! [`exchange`]. An edition's table takes 0.6 to 0.9 MB, and its construction 128 KiB of stack.
 
 #![cfg_attr(not(feature = "std"), no_std)]
 // Some code is used only by modules of a feature.

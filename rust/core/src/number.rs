@@ -38,12 +38,12 @@ impl NumberEncoding {
     }
 }
 
-/// The bits of a word that a number uses.
+/// The bits of an integer of one or more bytes that a number uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bits {
-    /// How many bits are below them.
+    /// The number of bits below them.
     pub shift: u32,
-    /// How many there are.
+    /// The number of bits that are used.
     pub count: u32,
     /// Whether the next number uses other bits of the same bytes.
     pub more: bool,
@@ -54,9 +54,9 @@ pub struct Bits {
 /// The bytes are an unsigned integer `u`. The raw value is `u - 256^width` if `u > signed_at`, else
 /// `u`. The physical value is `raw * multiply / divide`. The bounds are those of the raw value.
 ///
-/// A [`NumberEncoding::Float`] is an IEEE float of 4 or 8 bytes, without a scale or a sign rule. Its raw
-/// value is the integer of its bits, with the bits after a set sign inverted, so that raw values
-/// have the order of the floats.
+/// A [`NumberEncoding::Float`] is an IEEE float of 4 or 8 bytes, without a scale or a sign rule.
+/// Its raw value is the integer of its bits, with the bits after a set sign inverted, so that raw
+/// values have the order of the floats.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[allow(missing_docs)] // the doc above explains each field
 pub struct Number {
@@ -70,7 +70,7 @@ pub struct Number {
     pub encoding: NumberEncoding,
     /// The legal raw values, where they differ from those of the field's other numbers.
     pub choices: Vec<i64>,
-    /// Whether it is a flag beside other numbers.
+    /// Whether it is a flag in a field that also has other numbers.
     pub flag: bool,
     /// Which bits of its bytes it uses; `None`: all.
     pub bits: Option<Bits>,
@@ -119,7 +119,8 @@ pub enum Misfit {
     Cases,
     /// A selector is not the index of a field of one number.
     Selector,
-    /// A variant is longer than LEN can express.
+    /// A variant is longer than LEN can express. Or, in a format whose replies carry no id, a reply
+    /// has fewer bytes than the id of a request.
     Length,
 }
 
@@ -132,11 +133,11 @@ impl fmt::Display for Misfit {
             Self::Scale => "a scale is zero, or too fine for an exact double",
             Self::Bounds => "a bound is an integer that a double cannot represent exactly",
             Self::Cases => {
-                "all cases of a field must have one size, and one number unless it has many"
+                "all cases of a field must have the same size; a field that is not a row must have one number"
             }
             Self::Selector => "a selector must be a field of the message with one number",
             Self::Length => {
-                "a variant is longer than LEN can express, or a reply without an id is shorter than an id"
+                "a variant is longer than LEN can express, or replies carry no id and one has fewer bytes than an id"
             }
         })
     }
@@ -173,7 +174,7 @@ impl Number {
             && (sign(self), bits(self)) == (sign(other), bits(other))
     }
 
-    /// Return the number of bytes from here to the next number of the field.
+    /// Return the number of bytes from the start of this number to the next number of the field.
     #[inline]
     #[must_use]
     pub fn step(&self) -> usize {
@@ -198,7 +199,7 @@ impl Number {
         self.is_float() && self.maximum >= raw_of_float(f64::INFINITY, self.width)
     }
 
-    /// Return the raw value that starts there.
+    /// Return the raw value of the bytes at `start`.
     #[inline]
     #[must_use]
     pub fn unpack(&self, data: &[u8], start: usize) -> i64 {
@@ -225,18 +226,18 @@ impl Number {
         }
     }
 
-    /// Append the lowest bytes of a raw value; a negative one is its two's complement.
+    /// Append the lowest bytes of a raw value; negative values are in two's complement.
     pub(crate) fn pack(&self, raw: i64, bytes: &mut Vec<u8>) {
         bytes.extend(self.ordered_bytes(raw).iter().take(self.width));
     }
 
-    /// Write the lowest bytes of a raw value over those that start there.
+    /// Overwrite the bytes at `start` with the lowest bytes of a raw value.
     #[inline]
     pub(crate) fn put(&self, raw: i64, bytes: &mut [u8], start: usize) {
         let all = self.ordered_bytes(raw);
         let [first, second, ..] = all;
         match bytes.get_mut(start..start + self.width) {
-            // One or two bytes, as most numbers have, are written without a call.
+            // Most numbers have one or two bytes, which are written without a function call.
             Some([one]) => *one = first,
             Some([one, two]) => (*one, *two) = (first, second),
             Some(places) => {
@@ -300,13 +301,14 @@ impl Number {
     /// Return whether the bounds allow every raw value that the bytes can encode.
     pub(crate) fn takes_all_bytes(&self) -> bool {
         if !self.is_plain() || !self.choices.is_empty() {
-            return false; // then each value is compared
+            return false; // each raw value has to be compared
         }
         let (least, most) = self.natural_range();
         self.minimum <= least && most <= self.maximum
     }
 
-    /// Return the lowest and the highest raw value that its bytes can hold; of floats: finite ones.
+    /// Return the lowest and the highest raw value that its bytes can hold; for floats, the finite
+    /// ones.
     #[must_use]
     pub fn natural_range(&self) -> (i64, i64) {
         if self.is_float() {
@@ -318,10 +320,10 @@ impl Number {
         (if signed_at < top { signed_at - top } else { 0 }, signed_at)
     }
 
-    /// Check that the codecs can interpret it; they compute without overflow then.
+    /// Check that the codecs can interpret the number, and compute without overflow.
     ///
     /// # Errors
-    /// They cannot.
+    /// Its width, scale or bounds are not supported.
     pub fn check(&self) -> Result<(), Misfit> {
         if self.is_float() {
             return match (self.width, self.multiply, self.divide) {
@@ -353,7 +355,7 @@ impl Number {
     }
 }
 
-/// Return the bits of a float after its sign.
+/// Return a mask of all bits of a float except its sign.
 fn magnitude(width: usize) -> i64 {
     if width == 4 {
         i64::from(i32::MAX)
@@ -362,9 +364,9 @@ fn magnitude(width: usize) -> i64 {
     }
 }
 
-/// Return the raw value of the bits of a float.
+/// Return the raw value of a float, given its bits as an integer.
 fn ordered(unsigned: i64, width: usize) -> i64 {
-    // Cutting the bits to the width extends their sign.
+    // The cast to 32 bits and back extends the sign.
     let signed = if width == 4 {
         i64::from(unsigned as i32)
     } else {
@@ -377,10 +379,10 @@ fn ordered(unsigned: i64, width: usize) -> i64 {
     }
 }
 
-/// Return the raw value of the nearest float; too large a value becomes infinite.
+/// Return the raw value of the float nearest to `real`; a value that is too large becomes infinite.
 fn raw_of_float(real: f64, width: usize) -> i64 {
     if real.is_nan() {
-        // One NaN for all, since a payload does not survive every conversion.
+        // All NaNs become the same one, since the payload does not survive every conversion.
         return if width == 4 {
             0x7FC0_0000
         } else {

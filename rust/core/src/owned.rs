@@ -11,8 +11,8 @@ pub struct OwnedFrame(Bytes);
 /// The number of bytes stored in place: enough for nearly all messages, and so few that a Python
 /// object of a frame takes 72 bytes.
 const IN_PLACE: usize = 22;
-/// The bytes in place start in the middle of a word of eight bytes in memory; this many come before
-/// the next word.
+/// The bytes in place do not start at an address that is a multiple of eight; the next such address
+/// is this many bytes later.
 const BEFORE_WORDS: usize = 6;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,8 +34,8 @@ impl From<Frame<'_>> for OwnedFrame {
 
 /// Return the bytes, and zeros after them; `None` if they are too many.
 ///
-/// They are copied word by word, since they were written word by word. If a read had another size
-/// than the write before it, the processor would wait until the write is in the cache.
+/// They are copied eight at a time, as they were written. If a read had another size than the write
+/// before it, the processor would wait until the write is in the cache.
 #[inline(always)]
 fn in_place(bytes: &[u8]) -> Option<[u8; IN_PLACE]> {
     let mut place = [0; IN_PLACE];

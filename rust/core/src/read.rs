@@ -98,7 +98,8 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Return each number with the index of its field, raw and physical; or the first not allowed.
+    /// Return the index of the field, the raw and the physical value of each number; or the first
+    /// number that is not allowed.
     pub(crate) fn numbers(&self) -> Result<Vec<(usize, i64, Value)>, BadRaw> {
         let mut values = Vec::with_capacity(self.variant.size());
         for (index, field) in self.variant.fields().iter().enumerate() {
@@ -128,7 +129,7 @@ impl Reader<'_> {
         self.text(index, field, case)
     }
 
-    /// Return the first byte of a text that is not of its encoding as an error.
+    /// Return an error if a text has a byte that its encoding does not allow.
     fn text(&self, index: usize, field: &Field, case: usize) -> Result<(), BadRaw> {
         if !matches!(field.shape, Shape::Text(..)) {
             return Ok(());

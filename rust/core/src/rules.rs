@@ -1,4 +1,4 @@
-//! Validates whether a frame starts some bytes: the one legality check of framer and decoder.
+//! Decides whether bytes begin with a legal frame; framer and decoder share this check.
 
 use crate::direction::Direction;
 use crate::frame::{Frame, FrameFormat, Layout};
@@ -9,7 +9,7 @@ use crate::reason::Reason;
 /// The verdict on the bytes at a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict<'a> {
-    /// A frame starts there.
+    /// A legal frame.
     Frame(Frame<'a>),
     /// No frame starts there, whatever bytes follow.
     Rejected(Reason),
@@ -104,12 +104,13 @@ impl Rules {
         length.end().max(id.end()).max(overhead + usize::from(most))
     }
 
-    /// Validate whether a frame starts `rest`. This takes no longer than reading the longest frame
-    /// once, whatever the bytes.
+    /// Decide whether `rest` begins with a legal frame. For any bytes, this takes no longer than
+    /// reading the longest frame once.
     #[inline]
     #[must_use]
     pub fn validate<'a>(&self, rest: &'a [u8]) -> Verdict<'a> {
-        // The fast path for most positions: the same as `validate_stepwise`, with four bytes at once.
+        // The fast path for most positions: the same as `validate_stepwise`, with four bytes at
+        // once.
         if let Some(&[first, second, length, id]) = rest.first_chunk()
             && self.plain
         {

@@ -63,7 +63,7 @@ impl Seam {
         }
     }
 
-    /// End a call: every byte before position `at` is accounted for.
+    /// End a call: every byte before position `at` belongs to a frame or to noise; keep the rest.
     pub(crate) fn keep(&mut self, crossing: Crossing, chunk: &[u8], at: usize) {
         let Crossing {
             mut data,

@@ -1,4 +1,4 @@
-//! Counts of what a framer has received.
+//! Counts the bytes, frames and noise that a framer has received.
 
 use alloc::collections::BTreeMap;
 

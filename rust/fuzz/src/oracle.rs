@@ -1,5 +1,5 @@
-//! Implements `docs/framing.md` without any optimization: it validates every position separately and
-//! computes the check bit by bit.
+//! Implements `docs/framing.md` without any optimization: it validates every position separately
+//! and computes the check bit by bit.
 
 use std::collections::HashSet;
 
@@ -73,7 +73,7 @@ impl Oracle {
         number(self.frame.layout.id, frame).expect("a frame has an id")
     }
 
-    /// Return the verdict on the start of `rest`; the first byte that decides it counts.
+    /// Return the verdict on the start of `rest`; it is decided by the earliest byte that can.
     pub fn look(&self, rest: &[u8]) -> Found {
         let starts = self.frame.header.iter().zip(rest);
         if starts.into_iter().any(|(must, is)| must != is) {

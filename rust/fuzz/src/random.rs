@@ -50,7 +50,7 @@ fn format(bytes: &mut Bytes<'_>) -> FrameFormat {
     }
 }
 
-/// Return a layout with its parts in any order, and a LEN that counts from none of them to all.
+/// Return a layout with its parts in any order, and a LEN that counts any number of them.
 fn layout(bytes: &mut Bytes<'_>, header: usize, address: bool) -> Layout {
     let flags = bytes.byte();
     let order = |bit: u8| match flags >> bit & 1 {

@@ -10,7 +10,7 @@ use crate::oracle::number;
 pub type Read = (usize, i64, Value);
 
 /// Return the result that decoding a whole legal frame of one direction must have; `None` if it has
-/// no variant. With `of`, only variants of the command with that index count.
+/// no variant. `of` restricts the search to variants of the command with that index.
 pub fn read(
     table: &Table,
     direction: Direction,
@@ -48,7 +48,8 @@ pub fn decoded(table: &Table, (variant, read): (VariantId, Vec<Read>), frame: &[
     }
 }
 
-/// Return that result in another form: a variant and its numbers.
+/// Decode a whole legal frame of one direction; return the variant and its numbers, or the first
+/// number that no variant allows. `None`: the frame has no variant.
 pub fn numbers(
     table: &Table,
     direction: Direction,

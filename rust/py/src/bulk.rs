@@ -247,7 +247,7 @@ fn rows<'py>(
 
 #[pymethods]
 impl NativeColumnReader {
-    /// Feed bytes; return the rows and noise that are certain since the last call.
+    /// Feed bytes; return the new rows and noise that more bytes cannot change.
     fn feed<'py>(&self, data: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let mut core = self.core.get(data.py())?;
         feed(&mut *core, data)?;
@@ -261,7 +261,7 @@ impl NativeColumnReader {
         self.given(py, &mut core)
     }
 
-    /// The number of bytes fed that are not accounted for yet.
+    /// The number of bytes that may still become part of a frame.
     #[getter]
     fn pending(&self, py: Python<'_>) -> PyResult<usize> {
         Ok(self.core.get(py)?.pending())

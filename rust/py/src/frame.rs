@@ -20,8 +20,8 @@ pub struct Origin {
     pub direction: Direction,
 }
 
-/// A whole, legal frame. It is decoded anew at each use: most programs use a frame once, and keeping
-/// its values takes longer than decoding them.
+/// A whole, legal frame. It is decoded anew at each use: most programs use a frame once, and
+/// keeping its values takes longer than decoding them.
 #[pyclass(frozen, module = "cobotwire._native")]
 pub struct NativeFrame {
     origin: Arc<Origin>,
@@ -60,8 +60,8 @@ impl NativeFrame {
         self.frame.get(self.origin.edition.core.frame())
     }
 
-    /// Decode it in one direction, or in those that the framer listens to. With `of`, only messages
-    /// of the command with that index count.
+    /// Decode it in one direction, or in those that the framer listens to. `of` restricts the
+    /// search to messages of the command with that index.
     fn read<'py>(
         &self,
         py: Python<'py>,
@@ -166,7 +166,8 @@ impl NativeFrame {
         }
     }
 
-    /// Return what `codec.decode(direction, frame.data, of=of)` returns, without validating it again.
+    /// Return what `codec.decode(direction, frame.data, of=of)` returns, without validating it
+    /// again.
     #[pyo3(signature = (direction = None, *, of = None))]
     fn decode<'py>(
         &self,

@@ -44,7 +44,7 @@ impl NativeFramer {
 
 #[pymethods]
 impl NativeFramer {
-    /// Feed bytes; return the events that are certain, in the order of the stream.
+    /// Feed bytes; return the events that more bytes cannot change, in the order of the stream.
     fn feed<'py>(&self, data: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyList>> {
         let py = data.py();
         if let Ok(bytes) = data.cast_exact::<PyBytes>()

@@ -169,7 +169,7 @@ fn instruction(given: GivenInstruction) -> Instruction {
 struct Parts<'a, 'py> {
     names: &'static Names,
     edition: &'a Edition,
-    /// The object that does the rest in Python: `cobotwire.diagnose.stream_summary.Rest`.
+    /// The Python object that diagnoses the other noise: `cobotwire.diagnose.stream_summary.Rest`.
     rest: &'a Bound<'py, PyAny>,
     list: Bound<'py, PyList>,
     failed: Option<PyErr>,

@@ -7,11 +7,12 @@ const NUMBERS: usize = 6;
 /// The rules of the numbers of a row. The last two of each array belong to no number.
 #[derive(Clone, Copy, Debug)]
 pub struct Six {
-    /// Added before a number is cut to two bytes, and subtracted afterwards.
+    /// Added to a number before its high bits are masked off, and subtracted after that: this
+    /// applies the sign rule.
     pub bias: [i32; 8],
     /// The least raw value.
     pub least: [i32; 8],
-    /// How far the largest raw value is from the least.
+    /// The difference between the largest and the least raw value.
     pub span: [u32; 8],
     /// The factor of a physical value, in two parts: `raw * high + raw * low`.
     pub high: [f64; 8],
@@ -39,8 +40,8 @@ impl Six {
         None
     }
 
-    /// Append the raw values of rows, with the same results. Those within their bounds fit the
-    /// type. `None` also if a bound is no raw value.
+    /// Append the raw values of rows; return the same as [`Self::append_physical`], and `None` also
+    /// if a bound is outside of the numbers of two bytes. Values within their bounds fit the type.
     #[inline]
     pub fn append_raw(
         &self,

@@ -11,7 +11,7 @@ pub const SEEN: usize = WINDOW + 2;
 pub struct Pattern {
     header: [u8; 2],
     least: u8,
-    /// How far the largest LEN is from the least.
+    /// The difference between the largest and the least LEN.
     span: u8,
 }
 

@@ -123,7 +123,7 @@ impl Edition {
     }
 }
 
-/// Return the values of a variant; or the kind of an error, and the argument at fault.
+/// Return the values of a variant, or the kind of the error and the wrong argument.
 fn row<'a>(
     fields: &'a [Field],
     given: &[(&'a str, Value)],

@@ -13,8 +13,8 @@ use crate::texts::{entry, hex, text};
 use crate::value::general;
 use crate::{Edition, Value};
 
-/// A run of bytes inside a frame, and what it means. If several parts are bits of one word, only the
-/// last of them lists the bytes.
+/// Adjacent bytes of a frame, and what they mean. If bit fields share bytes, `bytes` is empty for
+/// all of them but the last.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // the names of the fields explain them
 pub struct Explained {

@@ -38,7 +38,7 @@ impl<'a> Record<'a> {
         read.or_else(BadEdition::because).within(key, "")
     }
 
-    /// Return the value of a key; the usual one if it is missing.
+    /// Return the value of a key; the default if it is missing.
     pub(crate) fn or<T: Deserialize<'a>>(self, key: &str, usual: T) -> Outcome<T> {
         Ok(self.get::<Option<T>>(key)?.unwrap_or(usual))
     }
@@ -53,12 +53,12 @@ impl<'a> Record<'a> {
         self.at(key).as_word().within(key, "")
     }
 
-    /// Return the value that a word states; the usual one if it is missing.
+    /// Return the value that a word states; the default if it is missing.
     pub(crate) fn word_or<T: Word>(self, key: &str, usual: T) -> Outcome<T> {
         self.some(key).map_or(Ok(usual), |_| self.word(key))
     }
 
-    /// Return the values that a list of words states; the usual ones if it is missing.
+    /// Return the values that a list of words states; the default if it is missing.
     pub(crate) fn words_or<T: Word>(self, key: &str, usual: &[T]) -> Outcome<Vec<T>> {
         let read = |list: Self| list.items()?.into_iter().map(Self::as_word).collect();
         let words = self.some(key).map(read);
@@ -91,7 +91,7 @@ impl<'a> Record<'a> {
         BadEdition::because(format_args!("{key} is {found}; allowed: {low}..{high}"))
     }
 
-    /// Return a number in a range; the usual one if it is missing.
+    /// Return a number in a range; the default if it is missing.
     pub(crate) fn within_or<T>(self, key: &str, range: RangeInclusive<T>, usual: T) -> Outcome<T>
     where
         T: Deserialize<'a> + PartialOrd + Display,

@@ -36,7 +36,7 @@ pub use crate::value::Value;
 
 /// The version of the format.
 const VERSION: i64 = 3;
-/// The largest file. A value of JSON takes up to 32 times its text in memory.
+/// The largest file. In memory, a JSON value takes up to 32 times the size of its text.
 const LARGEST: usize = 4 << 20;
 
 /// A protocol as data. Commands are in the order of the table.
@@ -50,7 +50,7 @@ pub struct Edition {
     pub commands: Vec<Command>,
 }
 
-/// What texts and clients need of a command.
+/// The properties of a command that error texts and clients need.
 #[derive(Clone, Debug)]
 #[allow(missing_docs)] // the names of the fields explain them
 pub struct Command {
@@ -81,14 +81,14 @@ impl Command {
     }
 }
 
-/// What texts and clients need of a field.
+/// The properties of a field that error texts and clients need.
 #[derive(Clone, Debug, Default)]
 #[allow(missing_docs)] // the names of the fields explain them
 pub struct Field {
     pub name: String,
     /// The words of its choices, in their order; empty: they have none.
     pub labels: Vec<String>,
-    /// What raw values from the first to the second stand for; `{number}` is the raw value.
+    /// Ranges of raw values, each with a text for the values in it; `{number}` is the raw value.
     pub meanings: Vec<(i64, i64, String)>,
     /// The numbers of each case. A list, bytes or a text has those of one element:
     /// [`Field::number`] finds the number of any.
@@ -112,8 +112,8 @@ impl Field {
     }
 }
 
-/// What texts need of a number: its name in a named tuple, its unit, and the words of its choices;
-/// each may be empty.
+/// The properties of a number that error texts need: its name in a named tuple, its unit, and the
+/// words of its choices; each may be empty.
 #[derive(Clone, Debug, Default)]
 #[allow(missing_docs)] // the names of the fields explain them
 pub struct Number {

@@ -29,7 +29,7 @@ type Variant = (wire::Variant, (Vec<Field>, Vec<Named>));
 /// Makes the variants of the messages of a file.
 pub(crate) struct Messages<'a> {
     types: Types<'a>,
-    /// The most data bytes of a message with lists that vary.
+    /// The most data bytes of a message that has lists of varying length.
     most: usize,
 }
 
@@ -71,7 +71,7 @@ impl<'a> Messages<'a> {
         Ok(made)
     }
 
-    /// Return the lists of a message that vary.
+    /// Return the lists of a message that have a varying length.
     fn varying(&self, records: &[Record<'a>]) -> Outcome<Vec<Varying<'a>>> {
         let (mut found, mut names) = (Vec::new(), BTreeSet::new());
         for record in records {
@@ -84,7 +84,7 @@ impl<'a> Messages<'a> {
         Ok(found)
     }
 
-    /// Return a field as a list that varies, if it is one.
+    /// Return a field as a list of varying length, if it is one.
     fn list(&self, record: Record<'a>, name: &'a str) -> Outcome<Option<Varying<'a>>> {
         let of = self.of(record)?;
         let found = of.zip(of.map(bounds).transpose()?);
@@ -155,7 +155,8 @@ impl<'a> Messages<'a> {
         found.transpose()
     }
 
-    /// Return a field of bits, bytes, a text or a list; `list` has its number of elements if it varies.
+    /// Return a field of bits, bytes, a text or a list; `list` has its number of elements if it
+    /// varies.
     fn repeated(
         &self,
         of: Record<'a>,
@@ -174,8 +175,8 @@ impl<'a> Messages<'a> {
         Ok((field, text))
     }
 
-    /// Return a field of bits, bytes, a text or a list without its numbers, the numbers of one element,
-    /// and its texts.
+    /// Return a field of bits, bytes, a text or a list without its numbers, the numbers of one
+    /// element, and its texts.
     fn shaped(&self, of: Record<'a>) -> Outcome<(wire::Field, Numbers, Field)> {
         let (mut field, mut text) = (wire::Field::default(), Field::default());
         let shape = kind(of)?;

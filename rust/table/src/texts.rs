@@ -18,7 +18,7 @@ use crate::{Edition, Field, Value};
 const TEMPLATES: &str = include_str!("../error_texts.json");
 /// A longer value is cut.
 const MOST: usize = 80;
-/// This many bytes of what was received meanwhile are shown.
+/// An error shows at most this many bytes of what was received meanwhile.
 const SHOWN: usize = 24;
 
 /// Return the text of a key in a file. Each entry is on a line of its own, without escapes.
@@ -173,8 +173,8 @@ impl Edition {
         format!("{name}({}){to}", self.fields(message))
     }
 
-    /// Return the text of the error that ended a request; `None` for an error of the transport, which
-    /// has a text of its own.
+    /// Return the text of the error that ended a request; `None` for an error of the transport,
+    /// which has a text of its own.
     #[must_use]
     pub fn failure(&self, request: &Request, failure: &Failure) -> Option<String> {
         let (table, command) = (&self.protocol.table, request.command);

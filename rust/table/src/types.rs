@@ -13,15 +13,15 @@ use crate::json::{Record, Word};
 use crate::{BadEdition, Number, Outcome, Within};
 
 /// The most memory of all numbers and fields together, in bytes. Each number repeats the choices of
-/// its type, and a message has as many variants as the product of the sizes of its lists, so a short
-/// file could fill the memory.
+/// its type, and a message has as many variants as the product of the sizes of its lists, so a
+/// short file could fill the memory.
 const MOST_MEMORY: usize = 1 << 27;
 
 /// The types of a file, by their names.
 pub(crate) struct Types<'a> {
     wires: BTreeMap<&'a str, Record<'a>>,
     types: BTreeMap<&'a str, Record<'a>>,
-    /// How many bytes more all numbers and fields may take.
+    /// The number of bytes that further numbers and fields may take.
     left: Cell<usize>,
 }
 
@@ -58,7 +58,7 @@ impl Word for NumberEncoding {
     const WORDS: &[(&str, Self)] = &Self::ALL;
 }
 
-/// The numbers of a type in the order of the wire, and what texts need of each.
+/// The numbers of a type in wire order, and the name, unit and labels of each, for printed values.
 #[derive(Clone, Default)]
 pub(crate) struct Numbers {
     pub(crate) wire: Vec<core_table::Number>,
@@ -68,7 +68,7 @@ pub(crate) struct Numbers {
 }
 
 impl Numbers {
-    /// Return that many unsigned bytes, which are at most `most`.
+    /// Return `count` unsigned bytes, each of which is at most `most`.
     pub(crate) fn bytes(count: usize, most: i64) -> Self {
         let byte = core_table::Number {
             width: 1,
@@ -112,12 +112,12 @@ impl<'a> Types<'a> {
         })
     }
 
-    /// Return the type of a key, which is the name of one or a record.
+    /// Return the type under a key. The value is a type's name, or the record of a type.
     pub(crate) fn get(&self, record: Record<'a>, key: &str) -> Outcome<Record<'a>> {
         referred(&self.types, record.at(key)).within(key, "")
     }
 
-    /// Count memory; it is an error if it is too much.
+    /// Subtract memory from what is left; fail if there is not enough.
     pub(crate) fn spend(&self, bytes: usize) -> Outcome<()> {
         let left = self.left.get().checked_sub(bytes);
         let too_much = || BadEdition::because("all types and messages take too much memory");
@@ -164,7 +164,7 @@ fn referred<'a>(known: &BTreeMap<&str, Record<'a>>, reference: Record<'a>) -> Ou
     found.map_or_else(unknown, Ok)
 }
 
-/// Return the numbers of a type of bits: each is some bits of a word.
+/// Return the numbers of a type of bit fields.
 pub(crate) fn bits(of: Record<'_>) -> Outcome<Numbers> {
     let mut numbers = Numbers::default();
     for part in of.records("numbers")? {
@@ -179,7 +179,7 @@ pub(crate) fn bits(of: Record<'_>) -> Outcome<Numbers> {
     });
     if torn || numbers.wire.last().is_none_or(more) {
         return BadEdition::because(
-            "the parts of a word must have its width and order, and the last one ends it",
+            "bit fields that share bytes must have the same width and byte order, and only the last has more: false",
         );
     }
     Ok(numbers)

@@ -19,7 +19,8 @@ struct Caller {
 /// A session that JavaScript drives.
 pub struct Client {
     pub url: String,
-    /// What the next client on its port must know, and why its calls fail; `None`: it is open.
+    /// Once this client is closed: the state for the next client on the port, and the error of
+    /// further calls. `None`: it is open.
     pub ended: Option<(PersistedState, Error)>,
     session: Session,
     handle: Handle,
@@ -83,9 +84,9 @@ impl Client {
         }
     }
 
-    /// Take what happens at a time; return the bytes to write, the calls that have ended, for how
-    /// long nothing is to be done, and the number of a new call. `drained`: whether everything that
-    /// has come was received; `None`: the transport takes no bytes now.
+    /// Handle an event at the time `now`; return the bytes to write, the calls that have ended, the
+    /// time until the next deadline, and the number of a new call. `drained`: whether all bytes
+    /// that have arrived were received, or `None` if the transport cannot take bytes now.
     fn step(
         &mut self,
         now: u64,
@@ -118,7 +119,7 @@ impl Client {
         let mut bytes = Value::Absent;
         if let Some(drained) = drained {
             let outgoing = self.session.outgoing(now, drained).to_vec();
-            // The transport takes them, or it is lost.
+            // JavaScript either writes all of these bytes, or reports that the transport is lost.
             self.session.wrote(outgoing.len(), now);
             bytes = Some(outgoing)
                 .filter(|outgoing| !outgoing.is_empty())
@@ -176,8 +177,9 @@ impl Client {
         Ok(Value::Integer(self.calls))
     }
 
-    /// Return the calls that have ended: their numbers, whether it is good, and the answer or error.
-    /// `cut`: the transport was lost while it took bytes, so nobody knows how many.
+    /// Return the calls that have ended: the number of each, whether it succeeded, and its answer
+    /// or error. `cut`: the transport was lost during a write, so it is unknown how many bytes it
+    /// took.
     fn ended_calls(&mut self, cut: bool) -> Vec<Value> {
         let mut ended = Vec::new();
         for caller in std::mem::take(&mut self.callers) {
@@ -218,7 +220,7 @@ impl Client {
     }
 }
 
-/// Return names and values in turn.
+/// Return a row in which names and values alternate.
 pub fn flat(fields: Named) -> Value {
     let each = fields.into_iter();
     Value::Row(
@@ -275,7 +277,7 @@ fn options(given: &[Value], url: &str) -> Result<Options, Error> {
     })
 }
 
-/// Return what an option means; `None`: it was left out. A value that means nothing is an error.
+/// Convert an option; `None`: it was omitted. A value that cannot be converted is an error.
 fn read<T>(
     argument: &str,
     value: &Value,

@@ -1,4 +1,4 @@
-//! The codec of an edition: frames of messages, messages of frames, frames of a stream.
+//! The codec of an edition: encodes messages, decodes frames, and finds frames in a stream.
 
 use cobotwire::Value;
 use cobotwire::machine::Handle;
@@ -12,7 +12,7 @@ use crate::{number, whole};
 
 pub const FUNCTIONS: [&str; 3] = ["encode", "decode", "frames"];
 
-/// Answer a question; `None`: it is wrong.
+/// Run a function of the codec; `None`: there is none with this name and these arguments.
 pub fn answer(handle: &Handle, what: &str, given: &[Value]) -> Option<Value> {
     let [Value::Text(word), given @ ..] = given else {
         return None;
@@ -40,8 +40,8 @@ pub fn answer(handle: &Handle, what: &str, given: &[Value]) -> Option<Value> {
     }
 }
 
-/// Return the frame of the first variant, or of that one, that has these fields and allows their
-/// values.
+/// Return the frame of the first variant that has these fields and allows their values, or of the
+/// chosen variant.
 fn encoded(
     handle: &Handle,
     direction: Direction,
@@ -81,8 +81,9 @@ fn encoded(
     Some(Value::Absent)
 }
 
-/// Return the fields of a frame, its bytes explained, and the commands that it can be, the right one
-/// first, with their directions; or the reason, the offset and the text of what is wrong.
+/// Return the fields of a frame, its explained bytes, and the commands that it can be with their
+/// directions (the command of the fields is first); or the reason, the offset and the text of an
+/// error.
 fn decoded(handle: &Handle, listening: Listening, frame: &[u8], of: Option<usize>) -> Value {
     let (edition, table) = (&handle.edition, &handle.edition.protocol.table);
     let mut found: Vec<Decoded> = Vec::new();
@@ -156,7 +157,8 @@ fn rejected(handle: &Handle, listening: Listening, frame: &[u8], of: Option<usiz
     row.unwrap_or_default()
 }
 
-/// Return the events that each chunk of a stream made certain; an absent chunk is a silence.
+/// Return, for each chunk of a stream, the events that it completed. An absent chunk stands for
+/// silence.
 fn frames(handle: &Handle, listening: Listening, chunks: &[Value]) -> Value {
     let rules = handle.edition.protocol.table.rules(listening);
     let mut framer = Framer::new(rules.clone());

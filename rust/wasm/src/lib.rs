@@ -1,8 +1,9 @@
 //! The session of the crate `cobotwire` for JavaScript, which owns transports and timers.
 //!
-//! A message is a row of values: the name of a function, its arguments. The answer is a row, too:
-//! whether it is good, then the result, or the error: its kind, its text, and what else it knows.
-//! `clients/typescript/src` is the other end; times are nanoseconds of its clock.
+//! JavaScript calls a function by a message: a serialized row of values, the name of the function
+//! and its arguments. The answer is also a row: whether the call succeeded, then the result or the
+//! error (its kind, its text, and further values of that kind). `clients/typescript/src` is the
+//! other end; times are nanoseconds of its clock.
 
 mod client;
 mod codec;
@@ -31,7 +32,7 @@ pub extern "C" fn room(size: usize) -> *mut u8 {
     })
 }
 
-/// Take the message of that size, and return where its answer is.
+/// Run the message of that size; return the address of its answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn answer(size: usize) -> *const u8 {
     let given = MESSAGE.with_borrow(|message| message::read(&mut message.get(..size)?));
@@ -50,7 +51,7 @@ struct Machine {
     editions: Vec<Handle>,
     /// Each client, or why it has ended.
     clients: Vec<Result<Client, Error>>,
-    /// What clients have left on their ports, for the next ones.
+    /// For each port, the state for its next client.
     left: HashMap<String, PersistedState>,
 }
 
@@ -120,7 +121,7 @@ fn whole(number: usize) -> Value {
     Value::Integer(number as i64)
 }
 
-/// Return an error as a row: its kind, its text, and what else it knows.
+/// Return an error as a row: its kind, its text, and further values of that kind.
 fn described(error: &Error) -> Value {
     let mut row = vec![
         Value::Text(error.name().to_owned()),

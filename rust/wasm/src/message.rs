@@ -2,7 +2,7 @@
 
 use cobotwire::Value;
 
-/// Return the next value of a message; `None`: the message is cut, or has another byte.
+/// Return the next value of a message; `None`: the message is incomplete, or the kind is unknown.
 pub fn read(message: &mut &[u8]) -> Option<Value> {
     let [kind] = take(message)?;
     Some(match kind {

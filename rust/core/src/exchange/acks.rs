@@ -1,12 +1,12 @@
-//! Finds out which of the one-way requests that were sent have been acknowledged.
+//! Determines which of the one-way requests that were sent have been acknowledged.
 //!
-//! An acknowledgement carries the command's id, perhaps a constant and arguments of the request. If
-//! several requests with equal ids and arguments were sent and some acknowledgements are lost, it is
-//! unknown which request each belongs to. So a request counts as acknowledged only when the number
-//! of received acknowledgements exceeds the number that the other requests can still have caused.
-//! An acknowledged request may seem unacknowledged. The reverse cannot happen, if each
-//! acknowledgement comes once and in time. A lost acknowledgement causes doubt only until its time
-//! is over.
+//! An acknowledgement carries the command's id, and perhaps a constant and arguments of the
+//! request. If several requests with equal ids and arguments were sent and some acknowledgements
+//! are lost, it is unknown which request each belongs to. So a request counts as acknowledged only
+//! when the number of received acknowledgements exceeds the number that the other requests can
+//! still have caused. So an acknowledged request may seem unacknowledged. The reverse cannot happen
+//! if each acknowledgement comes once and in time. A lost acknowledgement causes doubt only until
+//! it is too late to come.
 
 use alloc::collections::BTreeMap;
 use alloc::sync::Arc;
@@ -30,17 +30,18 @@ struct ExpectedAck {
     /// The request. Sending the same request again makes another object.
     request: Arc<Request>,
     sent_at: Nanos,
-    /// After this it no longer counts.
+    /// The time after which it no longer counts.
     until: Nanos,
     /// Where in the received stream it can begin at the earliest.
     offset: u64,
-    /// For each similar acknowledgement of another request, until when it may come; soonest first.
+    /// For each similar acknowledgement of another request, the time until which it may come; the
+    /// earliest is first.
     doubts: Vec<Nanos>,
-    /// Whether it may still come, if each one belongs to the oldest request.
+    /// Whether it may still come, if each received acknowledgement belongs to the oldest request.
     expected: bool,
-    /// Whether a caller waits for it, and it is not yet certain.
+    /// Whether a caller waits for it, and it is not yet certain that it has come.
     uncertain: bool,
-    /// Whether it has certainly come, whichever requests the other ones belong to.
+    /// Whether it has certainly come, whichever requests the other acknowledgements belong to.
     certain: bool,
 }
 
@@ -62,14 +63,14 @@ impl ExpectedAck {
     }
 }
 
-/// The requests of one command id.
+/// The acknowledgements of requests with one command id.
 #[derive(Clone, Debug, Default)]
 struct CommandAcks {
     /// The acknowledgements that are expected or uncertain, oldest first.
     known: Vec<ExpectedAck>,
-    /// The request that was received back as a copy.
+    /// The request of which a copy was received.
     copied: Option<Arc<Request>>,
-    /// Since when acknowledgements have been expected without a break.
+    /// The time since which at least one acknowledgement has been expected.
     began_at: Nanos,
 }
 
@@ -82,7 +83,7 @@ impl CommandAcks {
         self.known.iter_mut().filter(|ack| ack.uncertain)
     }
 
-    /// Expect an acknowledgement, for which a caller waits if it is uncertain.
+    /// Expect an acknowledgement.
     fn add(&mut self, protocol: &Protocol, mut ack: ExpectedAck) {
         self.forget_expired(ack.sent_at);
         if self.expected().next().is_none() {
@@ -99,7 +100,7 @@ impl CommandAcks {
         self.known.push(ack);
     }
 
-    /// Stop expecting each acknowledgement this long after its request.
+    /// Expect each acknowledgement only for the time `within` after its request.
     fn shorten(&mut self, protocol: &Protocol, within: Nanos, now: Nanos) {
         for ack in self.known.iter_mut().filter(|ack| ack.expected) {
             ack.until = ack.until.min(ack.sent_at.saturating_add(within));
@@ -112,7 +113,8 @@ impl CommandAcks {
         }
     }
 
-    /// Settle the oldest acknowledgement that a frame `fits`; count it for all that wait.
+    /// Assign a frame to the oldest acknowledgement that it `fits`; count it for every uncertain
+    /// one that it fits.
     fn take(&mut self, fits: impl Fn(&ExpectedAck) -> bool, frame: &SeenFrame, began_at: Nanos) {
         let mut known = self.known.iter_mut();
         if let Some(ack) = known.find(|ack| ack.expected && fits(ack)) {
@@ -125,7 +127,7 @@ impl CommandAcks {
         self.known.retain(|ack| ack.expected || ack.uncertain);
     }
 
-    /// Return until when each similar acknowledgement that is expected may come.
+    /// Return, for each similar acknowledgement that is expected, the time until which it may come.
     fn doubts_of(&self, protocol: &Protocol, ack: &ExpectedAck) -> Vec<Nanos> {
         let alike = |other: &&ExpectedAck| {
             !Arc::ptr_eq(&other.request, &ack.request)
@@ -138,8 +140,8 @@ impl CommandAcks {
     fn forget_expired(&mut self, now: Nanos) {
         let mut expired = true;
         for ack in &mut self.known {
-            // Only the oldest ones expire: one that follows an acknowledgement that may still come
-            // stays.
+            // Expired ones are dropped only if all older ones are: while an older one may still
+            // come, those after it stay.
             expired &= !ack.expected || ack.until <= now;
             ack.expected &= !expired;
             ack.uncertain &= ack.until > now && !ack.certain;
@@ -149,9 +151,9 @@ impl CommandAcks {
 
     /// Return whether an acknowledgement of `newest` shows that motions are acknowledged at once.
     ///
-    /// It must come at once. Also, either no acknowledgement was expected when `newest` was sent,
-    /// or some have been expected without a break for longer than a motion may take. In the second
-    /// case an earlier acknowledgement was lost.
+    /// It must come at once. Also, either no other acknowledgement was expected when `newest` was
+    /// sent, or at every time since `began_at`, which is longer ago than a motion may take, one was
+    /// expected. In the second case an earlier acknowledgement was lost.
     fn are_motions_at_once(&self, protocol: &Protocol, newest: &ExpectedAck, now: Nanos) -> bool {
         let at_once = now.saturating_sub(newest.sent_at) < GRACE;
         let single = self.began_at == newest.sent_at;
@@ -171,8 +173,8 @@ pub(super) struct Acks {
 }
 
 impl Acks {
-    /// Note that a request goes out; its acknowledgement can begin at `offset`. A caller waits for
-    /// it if there is a `pending`. Return until when it is expected.
+    /// Note that a request is sent; its acknowledgement may begin at `offset` or later. A caller
+    /// waits for it if there is a `pending`. Return the time until which it is expected.
     pub(super) fn expect(
         &mut self,
         protocol: &Protocol,
@@ -206,7 +208,8 @@ impl Acks {
         until
     }
 
-    /// Note a copy of a request, which is a bare acknowledgement unless the line echoes.
+    /// Note a copy of a request. It is an acknowledgement without data, unless the transport
+    /// echoes.
     pub(super) fn note_copy(&mut self, protocol: &Protocol, frame: &SeenFrame) {
         let Some(acks) = self.commands.get_mut(&protocol.id_of(frame)) else {
             return;
@@ -221,9 +224,9 @@ impl Acks {
         }
     }
 
-    /// Count a frame that is an acknowledgement; `None`: it is not one. `began_at` is when its first
-    /// byte came; 0 if that is not known. Return the command of the oldest request that it can
-    /// belong to, its message, and the waits that it ends.
+    /// Count a frame that is an acknowledgement; `None`: it is not one. `began_at` is the time at
+    /// which its first byte came, or 0 if that is unknown. Return the command of the oldest request
+    /// that it can belong to, its message, and the waits that it ends.
     pub(super) fn take(
         &mut self,
         protocol: &Protocol,
@@ -258,7 +261,7 @@ impl Acks {
             self.motions_at_once = true;
             acks.shorten(protocol, GRACE, now);
         }
-        // Learning may have shortened the wait for some acknowledgements, which then expired.
+        // Only now: if the expected times were shortened, some acknowledgements have expired.
         acks.take(fits, frame, began_at);
         // The acknowledgement may report that the arm did not carry out the request.
         let refused = Failure::refusal(protocol, &message);
@@ -271,7 +274,8 @@ impl Acks {
         Some((command, message, ended.collect()))
     }
 
-    /// End the waits whose time is over: a copy counts, unless the line `echoes`.
+    /// End the waits whose time is over. A copy of the request counts as its acknowledgement,
+    /// unless the transport `echoes`.
     pub(super) fn wake(&mut self, protocol: &Protocol, now: Nanos, echoes: bool) -> Ended {
         let over = |wait: &mut Pending| wait.ends_first() <= now;
         let ended = self.waiting.extract_if(.., over).map(|mut wait| {

@@ -1,9 +1,9 @@
-//! A request that was only partly written: what must be sent before the next one.
+//! Determines what must be sent after a request that was only partly written, before the next one.
 //!
-//! A write may end after a part of a frame. The peer's parser then waits for the rest, and takes the
-//! next request as that rest: both together can be a legal frame that nobody sent. So fill bytes are
-//! sent first. They end the incomplete frame and make its check wrong, whatever LEN the parser
-//! accepts.
+//! A write may end after a part of a frame. The peer's parser then waits for the rest, and takes
+//! the next request as that rest: both together can be a legal frame that nobody sent. So fill
+//! bytes are sent first. They end the incomplete frame and make its check wrong, whatever LEN the
+//! parser accepts.
 //!
 //! Fill bytes cannot help if the part that was written contains a whole legal frame: a parser that
 //! rejects the outer frame finds the inner one. Then the rest of the frame is sent instead, so that
@@ -18,7 +18,7 @@ use crate::direction::{Direction, Listening};
 use crate::frame::FrameFormat;
 use crate::framer::{Event, Framer};
 
-/// The first `written` bytes of a request, which is all that the peer has of it.
+/// The first `written` bytes of a request: the part of it that the peer has.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // the names of the fields explain them
 pub struct Part {
@@ -37,19 +37,19 @@ impl Part {
     }
 }
 
-/// Knows which parts of a request the peer may hold, and what ends them.
+/// The parts of a request that the peer may hold, and the bytes that end them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Alignment {
-    /// What must be written before the next request; empty on an aligned line.
+    /// What must be written before the next request; empty if the peer holds no part.
     pub(super) align: Vec<u8>,
-    /// Every part that the peer may hold; empty on an aligned line.
+    /// Every part that the peer may hold.
     pub(super) held: Vec<Part>,
     /// The last frame sent on this transport; empty if none was sent.
     pub(super) last_request: Vec<u8>,
 }
 
 impl Alignment {
-    /// Note that the transport is gone. The last request, and earlier ones that were still on their
+    /// Note that the transport is lost. The last request, and earlier ones that were still on their
     /// way, may be cut anywhere.
     pub(super) fn lose(&mut self, protocol: &Protocol) {
         let last = core::mem::take(&mut self.last_request);
@@ -79,22 +79,22 @@ impl Alignment {
     }
 }
 
-/// A request that was only partly written.
+/// The methods for requests that were only partly written.
 impl Exchange {
-    /// Return what must be written before the next request; empty on an aligned line.
+    /// Return what must be written before the next request; empty if the peer holds no part of one.
     #[must_use]
     pub fn align(&self) -> &[u8] {
         &self.alignment.align
     }
 
-    /// Note that these bytes and the request after them were written completely.
+    /// Note that the bytes of [`Self::align`] and the request after them were written completely.
     pub fn aligned(&mut self) {
         self.alignment.align.clear();
         self.alignment.held.clear();
     }
 
-    /// Note that of `align + request` only `written` bytes were taken; `None`: the number is unknown. Return
-    /// how many of these bytes belong to the request.
+    /// Note that only the first `written` bytes of `align + request` were written; `None`: the
+    /// number is unknown. Return how many of them belong to the request.
     pub fn cut(&mut self, align: &[u8], request: &[u8], written: Option<usize>) -> Option<usize> {
         let (own, protocol) = (&mut self.alignment, &*self.protocol);
         let (format, mut parts) = (protocol.table.frame(), own.held.clone());
@@ -108,7 +108,8 @@ impl Exchange {
         }
         let sent = written.checked_sub(align.len());
         if let Some(sent) = sent {
-            // Text may follow a frame. It is not the beginning of a frame.
+            // A text may follow the frame. If only the text is cut, the peer holds no part of a
+            // frame.
             let within = (1..frame_size(format, request)).contains(&sent);
             parts = Vec::from_iter(within.then(|| Part::new(&request.into(), sent)));
         } else if let [part] = parts.as_mut_slice()
@@ -123,7 +124,7 @@ impl Exchange {
     }
 }
 
-/// Return whether a parser finds another frame once the fill bytes reject this one.
+/// Return whether a parser would find a frame in a part followed by its fill bytes.
 fn exposes(protocol: &Protocol, part: &Part, fill: &[u8]) -> bool {
     let rules = protocol.table.rules(Listening::To(Direction::Request));
     let (mut framer, mut found) = (Framer::new(rules.clone()), false);
@@ -157,7 +158,7 @@ fn fill_bytes(format: &FrameFormat, parts: &[Part]) -> Vec<u8> {
     };
     let mut fills = pairs.map(fill);
     let made = fills.find(|fill| !parts.iter().any(|part| completes_one(format, part, fill)));
-    // A frame has one right check, so most pairs do not complete it.
+    // A pair is always found: a frame has one right check, so most pairs do not complete it.
     made.unwrap_or_default()
 }
 

@@ -1,4 +1,4 @@
-//! What the exchange makes of received bytes.
+//! The events that the exchange reports for received bytes.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -35,7 +35,7 @@ pub enum ReplyError {
     Text(TextError),
 }
 
-/// What received bytes are, or which wait has ended by time. `command` is an index in the table.
+/// What received bytes are, or which wait timed out. `command` is an index in the table.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)] // the names of the fields explain them
 pub enum Event {
@@ -58,7 +58,8 @@ pub enum Event {
         error: ReplyError,
         frame: Option<SeenFrame>,
     },
-    /// The reply to a request that was given up, or to an earlier attempt of one that has ended.
+    /// The reply to a request that was given up, or to one more attempt of a request that has
+    /// ended.
     Late { command: usize, frame: SeenFrame },
     /// The acknowledgement of a one-way request.
     Ack {
@@ -107,7 +108,7 @@ impl From<framer::Event<'_>> for Event {
 }
 
 impl Event {
-    /// Return the bytes that no other event reports: noise, or a frame.
+    /// Return the received bytes that this event reports: noise, or a frame.
     #[must_use]
     pub fn data(&self) -> &[u8] {
         match self {

@@ -23,8 +23,9 @@ pub enum Safety {
     Persistent,
 }
 
-/// The name of a field. `echo`: a reply repeats the argument of that name. `status`: the field can
-/// report success or failure; only a constant without labels cannot.
+/// The name of a field. `echo`: the field of a reply repeats the argument of that name. `status`:
+/// the field may report success or failure, as every field may that is not a constant without
+/// labels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // the names of the fields explain them
 pub struct Named {
@@ -33,8 +34,8 @@ pub struct Named {
     pub status: bool,
 }
 
-/// A text outside any frame: `prefix field prefix field suffix`. A `silence` ends it; 0 for a text
-/// that is sent.
+/// A text outside any frame: `prefix field prefix field suffix`. A received text ends when nothing
+/// comes for the time `silence`, which is 0 for a text that is sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // the names of the fields explain them
 pub struct TextForm {
@@ -63,8 +64,8 @@ pub struct Facts {
     pub request: Vec<Vec<Named>>,
     /// The fields of each variant of its reply.
     pub reply: Vec<Vec<Named>>,
-    /// The raw values that report success, if the last status of its reply has one of them. Without
-    /// such values, each status that is 0 reports failure.
+    /// The raw values of the last status of its reply that report success. If it is empty, each
+    /// status that is 0 reports failure.
     pub accepted: Vec<i64>,
 }
 

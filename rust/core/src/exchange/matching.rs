@@ -20,7 +20,7 @@ pub(super) fn fields<'a>(
     names.iter().zip(decoded.fields())
 }
 
-/// Return whether two fields have the same value, as numbers compare: 1 is 1.0.
+/// Return whether two fields have the same value; the integer 1 equals the float 1.0.
 pub(super) fn same(one: &[Value], other: &[Value]) -> bool {
     let equal = |pair: (&Value, &Value)| match pair {
         (Value::Integer(whole), Value::Real(real)) | (Value::Real(real), Value::Integer(whole)) => {
@@ -48,14 +48,14 @@ impl Protocol {
         command.map_or(&[], |command| &command.reply)
     }
 
-    /// Return a frame as a reply of one command.
+    /// Decode a frame as a reply of one command.
     pub(super) fn read(&self, frame: &SeenFrame, of: usize) -> Result<Decoded, DecodeError> {
         let rules = self.table.rules(Listening::To(Direction::Reply));
         let frame = frame.frame.get(self.table.frame());
         read(&self.table, rules, frame, Some(of))
     }
 
-    /// Return the number in the place of the command id.
+    /// Return the number at the offset of the command id.
     pub(super) fn id_of(&self, frame: &SeenFrame) -> u16 {
         frame.frame.get(self.table.frame()).id()
     }
@@ -64,8 +64,8 @@ impl Protocol {
         self.table.frame().layout.reply_has_id
     }
 
-    /// Decode a frame with the request's command id as its reply; do not compare repeated arguments.
-    /// `None`: the frame replies to something else.
+    /// Decode a frame as the reply to a request, without comparing repeated arguments. `None`: the
+    /// frame replies to something else.
     pub(super) fn as_reply(
         &self,
         frame: &SeenFrame,
@@ -116,9 +116,8 @@ impl Protocol {
     /// Return whether a frame that is not a legal reply of a command is the reply of another
     /// command with the same id.
     ///
-    /// The frame is not a legal reply of `of`. A constant in the replies distinguishes commands that
-    /// share an id, such as the register number of a device that the arm forwards to. The rest of the
-    /// frame may be illegal.
+    /// A constant in the replies distinguishes commands that share an id, such as the register
+    /// number of a device to which the arm forwards requests. The rest of the frame may be illegal.
     fn replies_elsewhere(&self, frame: &SeenFrame, of: usize) -> bool {
         let format = self.table.frame();
         let frame = frame.frame.get(format);
@@ -154,7 +153,7 @@ impl Protocol {
             let values = one.argument(name).zip(other.argument(name));
             values.is_some_and(|(one, other)| !same(one, other))
         };
-        // Older firmware leaves the repeated argument out, so every variant must tell them apart.
+        // Older firmware omits the repeated argument, so the argument must differ in every variant.
         let tells = |variant: &Vec<Named>| {
             let mut fields = variant.iter();
             fields.any(|named| named.echo && differs(&named.name))
@@ -166,7 +165,7 @@ impl Protocol {
 }
 
 impl Request {
-    /// Return whether a reply of this address can belong to it.
+    /// Return whether a reply from this address can belong to the request.
     pub(super) fn can_come_from(&self, address: Option<u8>) -> bool {
         match self.replier {
             Replier::Unaddressed => address.is_none(),
@@ -176,8 +175,8 @@ impl Request {
         }
     }
 
-    /// Return whether a frame can be a reply of its command, whatever its values. The command id
-    /// tells; in a format without ids in replies, the size does.
+    /// Return whether a frame can be a reply of its command, whatever its values are. The command
+    /// id decides; in a format without ids in replies, the size does.
     pub(super) fn can_have_reply(&self, protocol: &Protocol, frame: &SeenFrame) -> bool {
         if protocol.has_ids() {
             return protocol.id(self.command) == Some(protocol.id_of(frame));

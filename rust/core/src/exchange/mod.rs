@@ -1,14 +1,15 @@
 //! The exchange of requests and replies over one transport: bytes and times go in, bytes, finished
 //! requests and events come out.
 //!
-//! Every decision about a state is made in this file. It has no thread, clock or port.
+//! This file makes every decision that depends on the state. It has no thread, clock or port.
 //! `python/cobotwire/session` is its specification: both make the same decisions for the same bytes
 //! and times. `docs/contribute/exchange.md` shows its states and what it promises.
 //!
-//! Only one request waits at a time, since the protocol has no sequence numbers. The others queue in
-//! the order of submission; later ones may overtake one that is held for an outstanding reply.
+//! Only one request waits at a time, since the protocol has no sequence numbers. The others queue
+//! in the order of submission; later ones may overtake one that is held for an outstanding reply.
 //! One-way requests are sent at once, and only once, also while another request waits. Times are
-//! nanoseconds of a clock that never goes back; those that are too large saturate, and never come.
+//! nanoseconds of a clock that never goes back. Sums that are too large saturate; that time never
+//! comes.
 
 mod acks;
 mod alignment;
@@ -47,10 +48,10 @@ use crate::decode::DecodeError;
 use crate::direction::{Direction, Listening};
 use crate::framer::Framer;
 
-/// How long bytes that come without a pause are read before a request is sent nevertheless.
+/// If received bytes come without a pause for this long, a request is sent nevertheless.
 const DRAIN: Nanos = 50_000_000;
 
-/// Requests that take turns, one-way requests, and the frames that come back.
+/// Matches requests and the received frames; requests with a reply take turns.
 #[derive(Clone)]
 pub struct Exchange {
     protocol: Arc<Protocol>,
@@ -59,11 +60,11 @@ pub struct Exchange {
     outstanding: OutstandingReplies,
     acks: Acks,
     echo: EchoDetector,
-    /// What waits for its turn.
+    /// The requests that wait for their turn.
     queue: Vec<Pending>,
     /// The request that was sent last; it waits for its reply unless it is done.
     last: Option<Pending>,
-    /// Whether the line took no bytes when the next request was to be sent.
+    /// Whether the transport took no bytes when the next request was due.
     line_is_full: bool,
     /// The outcomes that callers have not taken yet.
     finished: BTreeMap<Ticket, Result<Answer, Failure>>,
@@ -71,7 +72,8 @@ pub struct Exchange {
 }
 
 impl Exchange {
-    /// Return an exchange over a line that is aligned and silent.
+    /// Return an exchange for a new transport: the peer holds no part of a request, and no reply is
+    /// outstanding.
     #[must_use]
     pub fn new(protocol: Arc<Protocol>) -> Self {
         let rules = protocol.table.rules(Listening::To(Direction::Reply));
@@ -92,8 +94,9 @@ impl Exchange {
 
     // What callers want.
 
-    /// Queue a request that has a reply. The arm has `wait` to reply, `None`: the time of the
-    /// protocol. Its caller waits until `ends_by`, and gives it up in any case.
+    /// Queue a request that has a reply. The arm has the time `wait` to reply; `None`: the time
+    /// that the protocol states. The caller waits at most until `ends_by`, also for the request's
+    /// turn.
     pub fn enqueue(
         &mut self,
         request: Request,
@@ -148,13 +151,13 @@ impl Exchange {
         self.finished.remove(&ticket);
     }
 
-    /// Return how a request has ended, once; `None`: it has not, or was given up.
+    /// Return the outcome of a request, once; `None`: it has not ended, or was given up.
     pub fn take(&mut self, ticket: Ticket) -> Option<Result<Answer, Failure>> {
         self.finished.remove(&ticket)
     }
 
-    /// End every request: the transport is gone. Return the events of the bytes that still waited,
-    /// since bytes of a new connection cannot complete them.
+    /// End every request, since the transport is lost. Return the events of bytes that waited in
+    /// the framer; bytes of a new connection cannot complete them.
     pub fn fail(&mut self, now: Nanos) -> Vec<Event> {
         let events = self.flush(now);
         self.alignment.lose(&self.protocol);
@@ -172,7 +175,7 @@ impl Exchange {
 
     // What one session passes to the next one on its port.
 
-    /// Return what the next session on this port must respect.
+    /// Return the state for the next session on this port.
     #[must_use]
     pub fn persist(&self, now: Nanos) -> PersistedState {
         let mut outstanding = self.outstanding.clone();
@@ -184,7 +187,7 @@ impl Exchange {
         PersistedState { late, parts }
     }
 
-    /// Respect what an earlier session left on this port.
+    /// Take over the state that an earlier session on this port persisted.
     pub fn restore(&mut self, state: &PersistedState) {
         for late in &state.late {
             if let Some(request) = Request::from_frame(&self.protocol, &late.request.frame) {
@@ -198,8 +201,8 @@ impl Exchange {
 
     // What the client's loop does.
 
-    /// Take received bytes, then let time pass: [`Self::receive`] and [`Self::wake`]. Received bytes
-    /// are taken before time passes, or their frames would count as late.
+    /// Call [`Self::receive`], then [`Self::wake`]. In the other order, the received frames could
+    /// count as late.
     pub fn advance(&mut self, data: &[u8], now: Nanos) -> Vec<Event> {
         let mut events = self.receive(data, now);
         events.extend(self.wake(now));
@@ -213,7 +216,8 @@ impl Exchange {
         self.sort(received, now, chunk_at)
     }
 
-    /// Let time pass; return what this ends. Pass received bytes to [`Self::receive`] first.
+    /// End the waits whose time is over; return the events. Pass received bytes to
+    /// [`Self::receive`] first.
     pub fn wake(&mut self, now: Nanos) -> Vec<Event> {
         let waiting = self.waiting();
         let over = waiting.is_some_and(|waiting| waiting.ends_at() <= now);
@@ -222,7 +226,7 @@ impl Exchange {
         events
     }
 
-    /// End the requests of callers that no longer wait; return what happened to a sent one.
+    /// End the requests whose callers no longer wait; return the event of the one that was sent.
     pub fn end_overdue(&mut self, now: Nanos) -> Vec<Event> {
         let ended = self.acks.wake(&self.protocol, now, self.echo.proven);
         self.finished.extend(ended);
@@ -243,13 +247,13 @@ impl Exchange {
         expired.flatten().into_iter().collect()
     }
 
-    /// Note whether the line took no bytes when a request was to be sent.
+    /// Note whether the transport took no bytes when a request was due.
     pub fn note_full(&mut self, full: bool) {
         self.line_is_full = full;
     }
 
-    /// Return the bytes of the request to be sent now, for the first time or again. `drained`:
-    /// whether all bytes that have come by now were received, so that none counts as its reply.
+    /// Return the bytes of the request to send now, for the first time or again. `drained`: whether
+    /// all bytes that have arrived were received; unread ones would seem to be its reply.
     pub fn outgoing(&mut self, now: Nanos, drained: bool) -> Vec<u8> {
         if self.waiting().is_some() {
             return self.next_attempt(now).unwrap_or_default();
@@ -264,13 +268,13 @@ impl Exchange {
         }
     }
 
-    /// Return the request that [`Self::outgoing`] gave last; it may have ended by now.
+    /// Return the request that [`Self::outgoing`] returned last; it may have ended by now.
     #[must_use]
     pub fn sent_last(&self) -> Option<Ticket> {
         self.last.as_ref().map(|last| last.ticket)
     }
 
-    /// Note that writing the request that was sent last ended only now.
+    /// Note that the request that was sent last was completely written only now.
     pub fn written(&mut self, ticket: Ticket, now: Nanos) {
         let Some(last) = self.last.as_mut().filter(|last| last.ticket == ticket) else {
             return;
@@ -283,7 +287,7 @@ impl Exchange {
         }
     }
 
-    /// Return how long there is nothing to do unless bytes come; `None`: without limit.
+    /// Return the time until the next deadline, unless bytes come earlier; `None`: there is none.
     #[must_use]
     pub fn idle(&self, now: Nanos) -> Option<Nanos> {
         let waiting = self.waiting();
@@ -341,7 +345,7 @@ impl Exchange {
         self.last.as_ref().filter(|last| !last.done)
     }
 
-    /// Return from when on no late reply can be mistaken for the reply to a queued request.
+    /// Return the time from which no late reply can be mistaken for the reply to a queued request.
     fn free_at(&self, pending: &Pending, now: Nanos) -> Nanos {
         let held = (self.outstanding).held_until(&self.protocol, &pending.request);
         held.unwrap_or(now)
@@ -356,8 +360,8 @@ impl Exchange {
         self.last.insert(pending).request.frame.clone()
     }
 
-    /// Return whether a queued request is sent although the line was never drained, because bytes
-    /// come faster than they can be read. End the request if the late reply that held it may be
+    /// Return whether a queued request is sent although unread bytes remain, because they come
+    /// faster than they can be read. End the request if the late reply for which it was held may be
     /// among the unread bytes.
     fn sends_undrained(&mut self, index: usize, now: Nanos) -> bool {
         let Some(pending) = self.queue.get_mut(index) else {
@@ -377,7 +381,7 @@ impl Exchange {
         !held
     }
 
-    /// Return when the request is to be sent again: never while a received copy may be its reply.
+    /// Return the time to send the request again: never while a received copy may be its reply.
     fn repeat_at(&self, waiting: &Pending) -> Nanos {
         if waiting.candidate.is_some() && !self.echo.proven {
             return NEVER;
@@ -398,14 +402,15 @@ impl Exchange {
 
     // What received bytes are, and how the request that waits ends by them or by silence.
 
-    /// Return what the framer gives up, so that a frame hidden in it still counts.
+    /// Flush the framer, so that a frame inside the incomplete one is found; return the events.
     fn flush(&mut self, now: Nanos) -> Vec<Event> {
         let (mut received, fed) = (Vec::new(), self.fed());
         self.framer.flush(|event| received.push(event.into()));
         self.sort(received, now, fed)
     }
 
-    /// Return what the framer's events are; the bytes received last began at `chunk_at`.
+    /// Turn the framer's events into those of the exchange; the bytes received last begin at
+    /// `chunk_at`.
     fn sort(&mut self, received: Vec<Event>, now: Nanos, chunk_at: u64) -> Vec<Event> {
         let sorted = received.into_iter().map(|event| match event {
             Event::Unexpected { frame } => {
@@ -446,7 +451,8 @@ impl Exchange {
         match (is_copy, repeats, waits) {
             (false, true, _) => return self.end((Some(reply), Vec::new()), Some(frame), now),
             (false, false, _) => return self.match_other(frame, now, began_at, is_copy),
-            // A copy that can be the reply is kept; one that cannot proves that the line echoes.
+            // A copy that can be the reply is kept; one that cannot proves that the transport
+            // echoes.
             (true, true, Some(waiting)) => waiting.candidate = Some(reply),
             (true, ..) => self.echo.proven = true,
         }
@@ -486,7 +492,8 @@ impl Exchange {
         self.note(event)
     }
 
-    /// End a request with a reply of illegal values, unless the frame is something else.
+    /// End the request that waits with a reply of illegal values, unless the frame is an echo or
+    /// may be an outstanding reply.
     fn reject(&mut self, frame: SeenFrame, error: DecodeError, is_copy: bool) -> Event {
         if is_copy {
             self.echo.proven = true;
@@ -509,7 +516,7 @@ impl Exchange {
         }
     }
 
-    /// End the request that waits with its reply or text. Further copies of it may come.
+    /// End the request that waits with its reply or text.
     fn end(&mut self, got: Got, frame: Option<SeenFrame>, now: Nanos) -> Event {
         let waiting = self.waiting();
         // Other devices may reply to a broadcast too.
@@ -541,13 +548,13 @@ impl Exchange {
         })
     }
 
-    /// End the wait by silence after a text, by a copy that counts as reply, or by timeout.
+    /// End the wait: silence ends a text, a copy of the request becomes its reply, or it times out.
     fn end_wait(&mut self, now: Nanos) -> Vec<Event> {
         if let Some(event) = self.end_text(now) {
-            // What waits in the framer came after the text, and does not belong to it.
+            // Bytes that wait in the framer came after the text, and do not belong to it.
             return [event].into();
         }
-        // The framer gives up what waits in it, so that a frame hidden after it still counts.
+        // The reply may be inside an incomplete frame that waits in the framer.
         let mut events = self.flush(now);
         let Some(waiting) = self.waiting().filter(|waiting| waiting.ends_at() <= now) else {
             return events;
@@ -559,7 +566,7 @@ impl Exchange {
         events
     }
 
-    /// End the wait for a text that has begun, and has been silent for long enough.
+    /// End the wait for a text that has begun, if the silence after it was long enough.
     fn end_text(&mut self, now: Nanos) -> Option<Event> {
         let text = self.waiting()?.text.as_ref()?;
         if text.ends_at()? > now {
@@ -599,7 +606,7 @@ fn waiting(last: &mut Option<Pending>) -> Option<&mut Pending> {
 }
 
 impl fmt::Debug for Exchange {
-    /// Write what later decisions depend on.
+    /// Write the state on which later decisions depend.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Exchange")
             .field("fed", &self.fed())

@@ -9,7 +9,7 @@ use crate::decode::Decoded;
 use crate::message::VariantId;
 use crate::number::Value;
 
-/// A reply, or the fields of one that was text.
+/// A reply, or the fields of a reply that was text.
 pub(super) type Got = (Option<Decoded>, Vec<String>);
 
 /// The result of a request that succeeded.
@@ -25,7 +25,8 @@ pub struct Answer {
 }
 
 /// What a request waited for when its caller's deadline passed: its turn, the end of the time in
-/// which a late reply could be mistaken for its own (hold), a line that took no bytes, or its reply.
+/// which a late reply could be mistaken for its own (hold), a transport that took no bytes (line),
+/// or its reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // the names of the fields explain them
 pub enum WaitedFor {
@@ -51,8 +52,8 @@ pub enum Failure {
     Timeout {
         /// How long it waited: since it was sent, or with `waited_for` since the call.
         waited: Nanos,
-        /// How often it was sent. 0 without `waited_for`: the line brought more than can be read,
-        /// and a late reply may be among it.
+        /// How often it was sent. 0 without `waited_for`: bytes came faster than they can be read,
+        /// and a late reply may be among the unread ones.
         attempts: usize,
         /// What it waited for when its caller's deadline passed; `None`: it has not passed.
         waited_for: Option<WaitedFor>,
@@ -82,7 +83,8 @@ pub enum Failure {
 impl Failure {
     /// Return the failure that a reply reports by a status; `None`: it reports success.
     ///
-    /// Without accepted values, each status that is 0 reports it; repeated arguments do not count.
+    /// If the command has no accepted values, a status that is 0 reports failure, unless it repeats
+    /// an argument.
     pub(super) fn refusal(protocol: &Protocol, reply: &Decoded) -> Option<Self> {
         let (variant, facts) = (reply.variant, protocol.facts.get(reply.variant.command)?);
         let own = fields(facts.reply.get(variant.variant)?, reply).enumerate();

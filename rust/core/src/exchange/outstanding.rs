@@ -1,8 +1,8 @@
-//! Outstanding replies: those to requests that were given up, or were sent more than once.
+//! Keeps the outstanding replies: those to requests that were given up, or sent more than once.
 //!
 //! A late reply looks like the reply to the next request of the same command. So that request is
-//! held until the late reply is too late to come at all. It is not sent earlier, even if a late
-//! reply has come: some lines double replies.
+//! held until the late reply can no longer come. It is not sent earlier, even if a late reply has
+//! come: some transports deliver replies twice.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -39,7 +39,8 @@ impl OutstandingReplies {
         self.0.retain(|reply| reply.until > now);
     }
 
-    /// Return until when a late reply can be mistaken for this request's; `None`: no reply can.
+    /// Return the time until which a late reply can be mistaken for the reply to this request;
+    /// `None`: no outstanding reply can.
     pub(super) fn held_until(&self, protocol: &Protocol, request: &Request) -> Option<Nanos> {
         let replies = self.0.iter();
         let alike = replies.filter(|reply| !protocol.replies_differ(&reply.request, request));
@@ -67,7 +68,7 @@ impl OutstandingReplies {
     }
 }
 
-/// Replies that may still come, and what the peer may hold of a request that was cut.
+/// Replies that may still come, and the parts that the peer may hold of a request that was cut.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PersistedState {
     /// The outstanding replies, with times by the clock of the port. The next session reads their

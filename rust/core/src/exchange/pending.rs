@@ -1,4 +1,4 @@
-//! Requests in progress, and how often each is sent: the caller's choice.
+//! Requests in progress, and how often each is sent, which the caller chooses.
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -8,7 +8,7 @@ use super::text::TextCollector;
 use super::{Answer, Event, Facts, Failure, Nanos, Received, Request, Safety, WaitedFor};
 use crate::decode::Decoded;
 
-/// The latest reply that was seen on a real line came 727 ms after its request.
+/// How long a late reply is expected. The latest one seen from a real arm came after 727 ms.
 pub(super) const GRACE: Nanos = 1_000_000_000;
 /// A time that never comes.
 pub(super) const NEVER: Nanos = Nanos::MAX;
@@ -66,13 +66,13 @@ pub(super) struct Pending {
     pub(super) received: Vec<Received>,
     pub(super) policy: RetryPolicy,
     pub(super) queued_at: Nanos,
-    /// Since when unread bytes have kept it from being sent.
+    /// The time since which unread bytes have prevented sending it.
     pub(super) undrained_since: Nanos,
     /// When it was sent; empty while it waits for its turn.
     pub(super) attempt_times: Vec<Nanos>,
     /// When it was sent first; until then, when it was queued.
     pub(super) requested_at: Nanos,
-    /// Where in the received stream its reply can begin at the earliest.
+    /// The earliest position in the received stream at which its reply can begin.
     pub(super) offset: u64,
     /// A copy of the request that is also a legal reply.
     pub(super) candidate: Option<Decoded>,
@@ -84,7 +84,7 @@ pub(super) struct Pending {
 }
 
 impl Pending {
-    /// Note what was not the reply. Adjacent noise becomes one item.
+    /// Keep an event that was not the reply, for the error text. Adjacent noise becomes one item.
     pub(super) fn note(&mut self, event: &Event) {
         let more = event.data();
         if let (Event::Noise { .. }, Some(last)) = (event, self.received.last_mut())
@@ -143,7 +143,7 @@ impl Pending {
         self.ends_at().min(self.ends_by)
     }
 
-    /// Return when it is to be sent again. An attempt that was sent late still gets its full time.
+    /// Return the time to send it again. An attempt that was sent late still gets its full time.
     pub(super) fn repeat_at(&self) -> Nanos {
         let times = &self.attempt_times;
         let more = (times.len() as u64) < self.attempts;

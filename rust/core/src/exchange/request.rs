@@ -12,7 +12,7 @@ use crate::given::Given;
 use crate::message::{Command, Variant};
 use crate::write::EncodeError;
 
-/// A request as it goes over the line.
+/// An encoded request.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
     /// The index of the command.
@@ -23,7 +23,7 @@ pub struct Request {
     pub text: Vec<u8>,
     /// Who replies.
     pub replier: Replier,
-    /// The arguments that a reply may repeat, as it would repeat them; empty where none does.
+    /// The arguments, with the values that a reply would repeat; empty if no reply repeats any.
     pub(super) arguments: Arguments,
 }
 
@@ -32,7 +32,8 @@ pub struct Request {
 pub enum RequestError<E> {
     /// The command has a reply, and nobody replies to the address.
     Unanswered,
-    /// The command has a value for each joint of the arm; the addressed device has this number of joints.
+    /// The command has a value for each joint of the arm, but the addressed device has only this
+    /// number of joints.
     LacksJoints(usize),
     /// A value is not allowed, or there is no such command or address.
     Values(E),
@@ -41,9 +42,9 @@ pub enum RequestError<E> {
 }
 
 impl Request {
-    /// Validate and encode a request. Without `address` it goes to the first one of the frame
-    /// format, if it has addresses. Without `variant` it is the first one that allows the values. `texts` are
-    /// the fields of a text after the frame.
+    /// Validate and encode a request. Default `address`: the first one of the frame format, if it
+    /// has addresses. Default `variant`: the first one that allows the values. `texts` are the
+    /// fields of a text after the frame.
     ///
     /// # Errors
     /// There is no such command or address, or an argument is not allowed.
@@ -72,7 +73,7 @@ impl Request {
         let form = facts.request_text.as_ref();
         let text = form.map(|form| form.encode(texts)).transpose();
         let text = text.map_err(RequestError::Text)?;
-        // Decoding our own frame gives the arguments as a reply would repeat them.
+        // The arguments are decoded from the frame, since a reply repeats the rounded values.
         let repeats = text.is_none() && facts.can_repeat();
         let own = || decode(&protocol.table, Direction::Request, &frame, Some(command)).ok();
         let own = repeats.then(own).flatten();
@@ -141,8 +142,8 @@ impl Protocol {
         known.find(|known| Some(known.value) == address)
     }
 
-    /// Return the number of joints of an address's device if a command has a value for each joint of
-    /// the protocol, and the device has fewer.
+    /// Return the number of joints of an address's device if a command has a value for each joint
+    /// of the protocol, and the device has fewer.
     fn lacks_joints(&self, address: Option<u8>, command: &Command) -> Option<usize> {
         let joints = self.addressee(address)?.joints;
         let variants = command.request.iter().chain(&command.reply);

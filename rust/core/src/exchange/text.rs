@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::{Nanos, TextForm};
 
-/// Names and passwords of a network have at most 32 and 63 characters.
+/// The longest text. The names and passwords of networks are shorter: at most 32 and 63 characters.
 const LIMIT: usize = 4096;
 /// The error shows at most this many bytes of a longer text.
 const SHOWN: usize = 64;
@@ -38,7 +38,7 @@ pub enum TextMistake {
 pub enum TextFault {
     /// The one with this index is not printable ASCII.
     NotPrintable(usize),
-    /// They contain what separates them, and would be read differently.
+    /// They contain one of the texts that separate them, so they would be decoded differently.
     Ambiguous,
 }
 
@@ -152,7 +152,7 @@ impl TextCollector {
     }
 }
 
-/// Return where some bytes first occur in others.
+/// Return the offset at which `bytes` first occur in `data`.
 pub(super) fn find(data: &[u8], bytes: &[u8]) -> Option<usize> {
     (0..=data.len()).find(|at| data.get(*at..).is_some_and(|rest| rest.starts_with(bytes)))
 }

@@ -46,7 +46,7 @@ impl Lengths {
 }
 
 impl Diagnosis {
-    /// Recognise what is left of a frame at `at`.
+    /// Recognise the remains of a frame at `at`.
     pub(super) fn damaged(&self, cluster: &Cluster<'_>, at: usize) -> Verdict {
         let rest = cluster.rest(at);
         if self.is_cut(rest) {
@@ -69,7 +69,8 @@ impl Diagnosis {
         damage.then_some(lengths)
     }
 
-    /// Return the size of the damaged frame at `at`: up to a footer near a legal end, or by LEN.
+    /// Return the size of the damaged frame at `at`: up to a footer near a legal end, or else as
+    /// LEN states.
     fn extent(&self, cluster: &Cluster<'_>, at: usize, lengths: &[u16]) -> usize {
         let rest = cluster.rest(at);
         let reach = rest.len().min(self.longest() + MOST_SLACK);

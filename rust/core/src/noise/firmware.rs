@@ -1,8 +1,8 @@
-//! Text of the controller's firmware, line by line. Panics and boot messages are for Python.
+//! Recognises text of the controller's firmware, line by line. Python diagnoses panics and boots.
 
 use super::{Cluster, Kind, Verdict};
 
-/// This many readable bytes in a row are text.
+/// At least this many readable bytes in a row are text.
 const FEWEST: usize = 6;
 /// Longer lines are cut.
 pub(super) const LINE: usize = 1024;
@@ -16,12 +16,12 @@ pub(super) fn readable(byte: u8) -> bool {
     matches!(byte, b'\t' | b'\n' | b'\r' | 0x1B | b' '..=b'~')
 }
 
-/// Return whether an error message starts the bytes.
+/// Return whether bytes begin with an error message.
 pub(super) fn starts_message(data: &[u8]) -> bool {
     data.starts_with(PANIC) || data.starts_with(COMMAND_ERROR)
 }
 
-/// Recognise the line at `at`; directly after other text it may be short.
+/// Recognise the line of text at `at`; directly after other text it may be shorter than [`FEWEST`].
 pub(super) fn line(cluster: &Cluster<'_>, at: usize, after_text: bool) -> Verdict {
     let rest = cluster.data.get(at..).unwrap_or_default();
     let readable = |byte: &&u8| readable(**byte);

@@ -107,7 +107,7 @@ type Verdict = Option<(Kind, usize)>;
 pub(crate) struct Diagnosis {
     /// The rules of the stream, which tell why a byte is noise.
     rules: Rules,
-    /// The rules of the directions that count as listed.
+    /// The rules of the directions that the stream listens to, with the ids of the table only.
     listed: Rules,
     /// The rules of the direction that the stream does not listen to.
     other: Option<Rules>,
@@ -158,12 +158,12 @@ impl Diagnosis {
         }
     }
 
-    /// Return the id of what starts like a frame; `None` if the bytes end before it.
+    /// Return the id of the bytes that start like a frame; `None` if they end before the id.
     pub(crate) fn id(&self, cluster: &Cluster<'_>, at: usize) -> Option<u16> {
         self.heading(cluster.rest(at)).map(|(_, id)| id)
     }
 
-    /// Find the classes of all bytes of a cluster. Return false if one of them is for Python.
+    /// Find the classes of all bytes of a cluster. Return false if Python must find one of them.
     pub(crate) fn run(&self, cluster: &Cluster<'_>, findings: &mut Vec<Finding>) -> bool {
         findings.clear();
         let (mut at, mut in_text) = (0, false);

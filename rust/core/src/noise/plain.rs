@@ -6,13 +6,13 @@ use super::{Cluster, Kind, Verdict};
 pub(super) const PIECE: usize = 256;
 /// The largest piece of a run of NULs.
 pub(super) const NULS: usize = 4096;
-/// This many NULs in a row are a finding, also inside other noise.
+/// At least this many NULs in a row are a finding of their own, also inside other noise.
 const FEWEST_NULS: usize = 4;
-/// This many NULs in a row mean a reboot, which Python describes.
+/// At least this many NULs in a row mean a reboot, which Python describes.
 const REBOOT_NULS: usize = 64;
 /// Fewer bytes do not prove a wrong baud rate.
 const FEWEST_GARBAGE: usize = 3;
-/// Fitting bytes from this value on are not small numbers.
+/// Bytes below this value may be small numbers, so they are no sign of a wrong baud rate.
 const LARGE: u8 = 0x40;
 
 /// Recognise the run of NULs at `at`.

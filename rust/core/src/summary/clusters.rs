@@ -2,7 +2,7 @@
 
 /// Noise may continue after frames of at most this many bytes together.
 const REACH: u64 = 64;
-/// More noise than this is handed over before its end has come.
+/// Noise that is longer than this is passed on before its end has come.
 const LIMIT: u64 = 1 << 20;
 
 /// Consecutive bytes of noise: their start and their end.
@@ -35,7 +35,7 @@ impl Clusters {
         self.spans.first().map(|(from, _)| *from)
     }
 
-    /// Return all that waits, and whether noise before it was handed over.
+    /// Return all noise that waits, and whether noise before it was handed over.
     pub(super) fn take(&mut self) -> Option<(Vec<Span>, bool)> {
         self.start()?;
         let spilled = self.spilled.take().is_some();

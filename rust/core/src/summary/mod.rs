@@ -1,4 +1,4 @@
-//! Summarizes a whole stream: counts its messages and its noise, and writes lines of JSON if wanted.
+//! Summarizes a whole stream: counts its messages and its noise, and optionally writes JSON lines.
 //!
 //! Frames and the frequent classes of noise never reach Python. The rest is handed over: noise of
 //! other classes, and the first noise of each class. Python also writes the texts of errors and of
@@ -51,7 +51,7 @@ pub trait Sink {
     fn describe(&mut self, noise: &Described<'_>) -> String;
 }
 
-/// How much noise of one class there is.
+/// The amount of noise of one class.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extent {
     /// The number of findings.

@@ -1,4 +1,4 @@
-//! Counts and writes what later bytes cannot change.
+//! Counts and writes the frames and noise that later bytes cannot change.
 
 use super::clusters::{Clusters, Span};
 use super::lines::{Described, Noise, Writer};
@@ -6,7 +6,7 @@ use super::{Bytes, Extent, Sink};
 use crate::noise::{Cluster, Diagnosis, Expected, Finding, Kind, reason};
 use crate::rules::{Rules, Verdict};
 
-/// Counts and writes what is certain.
+/// Counts and writes the frames and noise that later bytes cannot change.
 pub(super) struct Report {
     rules: Rules,
     diagnosis: Diagnosis,
@@ -77,7 +77,7 @@ impl Report {
         clusters.reuse(spans);
     }
 
-    /// Count and write noise; return false if it is for Python.
+    /// Count and write noise; return false if Python must diagnose it.
     fn diagnose(&mut self, spans: &[Span], bytes: Bytes<'_>, sink: &mut impl Sink) -> bool {
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.marks.clear();
@@ -110,8 +110,8 @@ impl Report {
         known
     }
 
-    /// Return whether Python has described a finding of each of these classes. If not, it gets all of
-    /// the findings, and their classes count as described.
+    /// Return whether Python has described a finding of each of these classes. If not, it gets all
+    /// of the findings, and their classes count as described.
     fn are_known(&mut self, findings: &[Finding]) -> bool {
         let is_known = |finding: &Finding| self.known.get(finding.kind as usize) == Some(&true);
         let all = findings.iter().all(is_known);

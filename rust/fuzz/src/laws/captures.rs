@@ -1,5 +1,5 @@
-//! Checks recordings against a plain reader: every byte is accounted for, at its time, however the
-//! file is cut.
+//! Checks recordings against a plain reader: however the file is cut, each byte belongs to a frame
+//! or to noise, with its time.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -4,7 +4,7 @@ use cobotwire_core::{Reason, Spans, Tally};
 
 use crate::oracle::Oracle;
 
-/// The counts of the oracle's events, and its noise with all reasons joined.
+/// The counts of the oracle's events, and its noise spans, merged across reasons.
 #[derive(Debug, Default)]
 pub struct Count {
     tally: Tally,
