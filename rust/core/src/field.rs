@@ -97,7 +97,8 @@ impl Field {
         (all.0.unwrap_or_default(), all.1.unwrap_or_default())
     }
 
-    /// Return the index of the first byte of the numbers that is not text, if there is one.
+    /// Return the index of the first byte that is not valid in the text's encoding, if there is
+    /// one.
     pub(crate) fn bad_text_at(&self, bytes: &[u8]) -> Option<usize> {
         let Shape::Text(Encoding::Utf8, _) = self.shape else {
             return None;

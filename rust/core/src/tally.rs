@@ -9,9 +9,9 @@ use crate::reason::Reason;
 pub struct Tally {
     /// Bytes fed.
     pub bytes: u64,
-    /// Frames, by ids of one byte.
+    /// The number of frames with each id of one byte.
     pub frames: [u64; 256],
-    /// Frames, by larger ids.
+    /// The number of frames with each larger id.
     pub wide: BTreeMap<u16, u64>,
     /// Bytes of noise, by reason; in the order of [`Reason::ALL`].
     pub noise: [u64; Reason::ALL.len()],

@@ -47,7 +47,7 @@ pub(crate) struct Writer<'a, V: Given> {
     pub(crate) variant: &'a Variant,
     pub(crate) values: &'a V::Row,
     pub(crate) bytes: &'a mut Vec<u8>,
-    /// Whether the last number left bits of its bytes to the next one.
+    /// Whether the next number is a bit field in the bytes of the last one.
     pub(crate) shared: bool,
 }
 
@@ -234,7 +234,7 @@ impl<V: Given> Writer<'_, V> {
         let raw = self.checked(place, number, value)?;
         let start = self.bytes.len();
         number.pack(raw, self.bytes);
-        // Numbers in bits of the same bytes follow each other: the bytes become one.
+        // Bit fields that share bytes follow each other: their bits are combined in these bytes.
         if number.bits.is_some() {
             if self.shared {
                 let whole = start - number.width;

@@ -38,7 +38,7 @@ fn ended() -> (Exchange, Ticket) {
 }
 
 #[test]
-fn ended_request_leaves_its_outcome_unless_it_is_given_up() {
+fn outcome_of_ended_request_is_kept_unless_the_request_is_given_up() {
     let (mut exchange, ticket) = ended();
     assert_eq!(exchange.take(ticket), Some(Err(Failure::Link)));
     let (mut exchange, ticket) = ended();

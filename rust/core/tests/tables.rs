@@ -13,7 +13,7 @@ fn misfit(fields: Vec<Field>) -> Result<(), TableError> {
 }
 
 #[test]
-fn table_with_a_misfit_is_rejected() {
+fn table_that_cannot_be_interpreted_is_rejected() {
     let word = || number(2, 1, -1, 1);
     let one = |number: Number| vec![field(vec![number], false)];
     let plain = || field(vec![word()], false);

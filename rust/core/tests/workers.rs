@@ -178,7 +178,7 @@ fn family(index: usize) -> (Arc<Table>, Vec<Vec<u8>>) {
 }
 
 #[test]
-fn short_streams_may_be_cut_at_every_place() {
+fn short_stream_cut_at_any_place_has_the_results_of_one_thread() {
     let mut dice = Dice(11);
     for index in 0..FAMILIES.len() {
         let (table, frames) = family(index);
@@ -193,7 +193,7 @@ fn short_streams_may_be_cut_at_every_place() {
 }
 
 #[test]
-fn long_streams_may_be_cut_and_chunked_anywhere() {
+fn long_stream_cut_and_chunked_anywhere_has_the_results_of_one_thread() {
     let mut dice = Dice(12);
     for index in 0..FAMILIES.len() {
         let (table, frames) = family(index);
@@ -223,7 +223,7 @@ fn noise_that_spans_many_pieces_is_one_span() {
 /// The scan from a guessed offset finds other frames than the scan of the stream, and never agrees
 /// with it: each frame contains the start of another one, which ends in the next frame.
 #[test]
-fn a_guess_that_never_meets_the_scan_changes_nothing() {
+fn guess_that_never_agrees_with_the_scan_does_not_change_the_result() {
     let (table, _) = family(0);
     let mut frame = [0; 17];
     frame[..4].copy_from_slice(&[0xFE, 0xFE, 0x0E, 0x20]);
@@ -239,7 +239,7 @@ fn a_guess_that_never_meets_the_scan_changes_nothing() {
     check(&table, &[short], (1..40).map(|stride| (3, stride)));
 }
 
-/// Ids of two bytes are counted by another map than ids of one.
+/// Ids of two bytes are counted in another map than ids of one byte.
 #[test]
 fn wide_ids_are_counted_once() {
     let format = FrameFormat {

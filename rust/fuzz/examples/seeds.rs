@@ -12,7 +12,7 @@ use cobotwire_fuzz::subjects::{self, LISTENING};
 
 /// The targets whose input is a head and a stream.
 const TARGETS: [&str; 3] = ["framer", "chunks", "decode"];
-/// The targets that take long for each input.
+/// The targets that need much time for each input.
 const SLOW_TARGETS: [&str; 2] = ["columns", "linear"];
 
 const FOUND: [&str; 2] = [

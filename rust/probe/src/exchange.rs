@@ -29,7 +29,7 @@ impl Open {
         }
     }
 
-    /// Do a step; `left` is the state that the last exchange left.
+    /// Do a step; `left` is the state that the last exchange persisted.
     pub fn step(
         &mut self,
         method: &str,
@@ -123,7 +123,8 @@ impl Open {
         json!([exchange.idle(now), hex(exchange.align()), last, ended])
     }
 
-    /// Return the request of `[command, values, texts, address, variant]`, or the text of its error.
+    /// Return the request of `[command, values, texts, address, variant]`, or the text of its
+    /// error.
     fn request(&self, json: &Json) -> Result<Request, String> {
         let (edition, command) = (&*self.edition, index(&self.edition, &json[0]));
         let (values, texts) = (row_of(&json[1]), json[2].as_array().unwrap());

@@ -67,7 +67,7 @@ fn every_raw_value_becomes_the_quotient_that_a_division_gives() {
 }
 
 #[test]
-fn every_raw_value_is_kept() {
+fn every_raw_value_is_appended_unchanged() {
     let (block, rows) = every_word();
     let rules = six(0x8000, (-0x8000, 0x7FFF), [1.0; 8]);
     let mut out = vec![];
@@ -107,7 +107,7 @@ fn every_raw_value_is_checked_against_its_bounds() {
 }
 
 #[test]
-fn bounds_that_are_no_raw_values_are_left_to_plain_code() {
+fn bounds_outside_of_two_bytes_are_left_to_plain_code() {
     for (bias, bounds) in [(0, (-1, 5)), (0x8000, (0, 0x8000)), (0, (5, 0x1_0000))] {
         let rules = six(bias, bounds, [1.0; 8]);
         let rows = std::iter::once(0);

@@ -11,11 +11,11 @@ pub enum Fault {
     LengthsDiffer,
     /// A block ends before its content does.
     TooShort,
-    /// A section has this version.
+    /// A section has this major version, which is not supported.
     Version(u16),
     /// An interface has a number of more than eight bytes.
     LongNumber,
-    /// A packet belongs to an interface of this link type.
+    /// A packet belongs to an interface of this link type, which is not one for private use.
     LinkType(u16),
     /// A block belongs to an interface of this index, which the file does not describe.
     NoInterface(u32),
