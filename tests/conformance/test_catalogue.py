@@ -50,7 +50,7 @@ def test_clause_is_never_given_to_another_test_case(monkeypatch: pytest.MonkeyPa
     for changed, message in (
         ((clauses[1], clauses[0], *clauses[2:]), "are not those of version 1"),
         (clauses[1:], "are not those of version 1"),
-        ((*clauses, clauses[0]), "a test case has two clauses"),
+        ((*clauses, clauses[0]), "CLAUSES names a test case twice"),
         ((*clauses, "later"), ""),
     ):
         monkeypatch.setattr(listing, "CLAUSES", changed)

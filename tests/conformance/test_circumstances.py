@@ -65,7 +65,7 @@ def test_report_states_tester_serial_number_clocks_and_load(tmp_path: Path) -> N
     words = ("conform", "device", "--simulated", "--tester", "Lab 7", "--serial", "S123", *files)
     ended = in_process.run(app, "cobotwire", *words, folder=tmp_path)
     assert ended.returncode == 1
-    assert "known.txt:1: 1 passed, among them reply-fields/get_angles" in ended.stdout
+    assert "known.txt:1: 1 did not fail, among them reply-fields/get_angles" in ended.stdout
     assert "known.txt:2: nothing that was tested matches no-such/*" in ended.stdout
     text = file.read_text()
     report = from_json(text)
@@ -87,7 +87,7 @@ def test_load_is_shown_only_with_verdicts_on_time(monkeypatch: pytest.MonkeyPatc
         tally.observe(case, "x", "it came late")
     tally.excuse(other, "y", Cause.NOT_TIMED, "the host was late")
     explained = [result.explained for result in tally.results()]
-    load = " (host load 1.50 a processor)"
+    load = " (host load 1.50 per processor)"
     assert explained == [f"it came late{load}", "it came late", f"the host was late{load}"]
 
 

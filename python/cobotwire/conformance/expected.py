@@ -91,7 +91,9 @@ def outdated(expectations: Sequence[Expectation]) -> Iterator[Result]:
     """Yield a failure for each line that is wrong, because it would hide the next failure."""
     for known in expectations:
         if known.passed:
-            reason = f"{known.place}: {len(known.passed)} passed, among them {known.passed[0]}"
+            reason = (
+                f"{known.place}: {len(known.passed)} did not fail, among them {known.passed[0]}"
+            )
         elif not known.met:
             reason = f"{known.place}: nothing that was tested matches {known.pattern}"
         else:

@@ -13,7 +13,7 @@ SHARE, READING = 0.001, 0.1
 
 
 def load() -> float:
-    """Return the load of the last minute for each processor; 0: the system does not report it."""
+    """Return the load average divided by the number of processors; 0 if it is unknown."""
     try:
         return round(os.getloadavg()[0] / (os.cpu_count() or 1), 2)
     except (AttributeError, OSError):
@@ -35,7 +35,7 @@ class HostWatch:
 
 
 def clock_mistake(host: Host) -> str:
-    """Return how the clocks differ; empty: they agree."""
+    """Return how the clocks differ; empty if they agree."""
     apart = host.wall_seconds - host.monotonic_seconds
     if abs(apart) <= READING + SHARE * host.monotonic_seconds:
         return ""

@@ -11,7 +11,7 @@ from cobotwire.protocol.table import Field, Number, Variant
 
 @dataclass(frozen=True, slots=True)
 class LocatedNumber:
-    """One number of a variant: its field, the field's index, its own index in the field's row.
+    """One number of a variant; ``index`` is that of its field, ``element`` its own in the field.
 
     ``start`` is the offset of its first byte in the data bytes.
     """
@@ -24,7 +24,7 @@ class LocatedNumber:
 
     @property
     def name(self) -> str:
-        """The name for people: ``speed``, ``coords.x``, ``joints[2].x``, ``data[0]``."""
+        """The name in messages: ``speed``, ``coords.x``, ``joints[2].x``, ``data[0]``."""
         field = self.field
         if is_list(field):
             element, at = divmod(self.element, field.each or 1)

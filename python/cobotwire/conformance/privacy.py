@@ -15,7 +15,7 @@ from typing import Any
 
 from cobotwire.conformance.report import Exchange, Report
 
-# The number of characters of a hash that are written.
+# Hashes are cut to this many characters.
 SHOWN = 16
 PART = r"[^\s/\\:;,'\"`<>|(){}\[\]]+"
 PATHS = re.compile(
@@ -46,8 +46,8 @@ def anonymous(report: Report) -> Report:
 
     def cleaned(value: Any) -> Any:
         if isinstance(value, Exchange):
-            # The evidence of a codec is text, which can hold paths. The evidence of a line is the
-            # bytes of frames, which stay as they are.
+            # The evidence of a codec is text, which can hold paths. Other evidence is the bytes of
+            # frames, which stay as they are.
             data = value.data if report.kind != "codec" else _bytes(value.data)
             return value._replace(data=data, note=without_paths(value.note))
         return _cleaned(value, cleaned)

@@ -70,11 +70,11 @@ class Result:
 
     ``command`` is empty if the test case is about the line as a whole. ``case`` is the id of the
     test case, ``source`` where the requirement is stated (``spec/commands/motion.yaml:12``),
-    ``reason`` a sentence that states what was expected and received. ``further`` has the sentences
-    of the next failures of the test case on the command; ``reason`` counts all. ``group`` is the
-    group of test cases that was run; empty if the subject's groups are checked together. ``load``
-    is the load of the host for each processor, if the verdict depends on time; 0: it does not, or
-    the load is unknown.
+    ``reason`` a sentence that states what was expected and received. ``further`` has the reasons
+    of later failures of the test case on the command; ``reason`` says how many there were.
+    ``group`` is the group of test cases that was run; empty if the subject's groups are checked
+    together. ``load`` is the host's load average divided by the number of its processors, if the
+    verdict depends on time; 0: it does not, or the load is unknown.
     """
 
     case: str
@@ -92,7 +92,7 @@ class Result:
     def explained(self) -> str:
         """The reason, with the load of the host if that may be a cause."""
         beside = self.load and self.verdict is not Verdict.PASS
-        return f"{self.reason} (host load {self.load:.2f} a processor)" if beside else self.reason
+        return f"{self.reason} (host load {self.load:.2f} per processor)" if beside else self.reason
 
     @property
     def outcome(self) -> str:
@@ -117,7 +117,7 @@ class Environment:
 
 @dataclass(frozen=True, slots=True)
 class Host:
-    """How long a run took by two clocks of the host, and the load for each of its processors.
+    """How long a run took by two clocks of the host, and the load average per processor.
 
     The times of a report are those of the monotonic clock. A load of 0 is unknown.
     """
@@ -138,12 +138,12 @@ class Report:
 
     ``finished`` is False until the run has reached its end; ``stopped`` says why it ended before.
     ``untested`` says what the run could not show, and which permission would show it.
-    ``options`` are those of the command line, without the subject: a run is repeated with them, in
-    the order of the results. ``statement`` is the text of the subject's implementation conformance
-    statement. ``catalogue`` is the version of the catalogue of test cases; the digests are those of
-    the edition's table and of the code that checks. ``clauses`` has the number of each test case in
-    the catalogue. ``tester`` is who is responsible for the run, ``serial`` a hash of the device's
-    serial number.
+    ``options`` are the command-line options except the subject; ``--again`` reuses them, and runs
+    the test cases in the order of ``results``. ``statement`` is the text of the subject's
+    implementation conformance statement. ``catalogue`` is the version of the catalogue of test
+    cases; the digests are those of the edition's table and of the code that checks. ``clauses`` has
+    the number of each test case in the catalogue. ``tester`` is who is responsible for the run,
+    ``serial`` a hash of the device's serial number.
     """
 
     kind: Kind

@@ -47,7 +47,7 @@ class TestCase:
 # Every suite has this one: a run may have a file of known failures.
 EXPECTED_FAILURE = TestCase(
     "expected-failure",
-    "What the file of known failures names fails.",
+    "Everything that the file of known failures names fails.",
     "docs/conformance.md",
 )
 

@@ -44,7 +44,7 @@ class _Count:
     note: str = ""
     # Why there is no verdict, if nothing is observed.
     otherwise: str = ""
-    # Why there is no verdict in any case, or why the verdict is not stable.
+    # Why there is no verdict even if something was observed, or why repetitions disagree.
     excuse: str = ""
     cause: Cause = Cause.NONE
 

@@ -137,5 +137,5 @@ def test_faults_that_an_edition_cannot_have_are_refused(bus: Any) -> None:
     assert set(possible_faults(TABLE)) == set(FAULTS) - set(OTHERS)
     with pytest.raises(UsageError, match="the edition mycobot280 has no events"):
         Referee(TABLE, scenario=faulty_replies(0.0, ["event"]))
-    with pytest.raises(UsageError, match="has no replies of several addresses"):
+    with pytest.raises(UsageError, match="has no second address"):
         Referee(TABLE, scenario=faulty_replies(0.0, ["address"]))

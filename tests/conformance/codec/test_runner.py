@@ -201,7 +201,7 @@ def test_answer_may_omit_an_echo_but_no_other_field() -> None:
     ("line", "works", "reason"),
     [
         ("get_angles/*  it reads none", False, "expected to fail (known.txt:1): it reads none"),
-        ("get_angles/* it reads none", True, "passed, among them decode-values"),
+        ("get_angles/* it reads none", True, "did not fail, among them decode-values"),
         ("get_angels/* why", True, "nothing that was tested matches decode-values"),
     ],
 )

@@ -1,7 +1,7 @@
 """The versions of the catalogue of test cases.
 
-Reports name a test case also by a number, that of its clause. It never changes, and is never used
-again: new test cases are added at the end of ``CLAUSES``.
+Reports also name a test case by the number of its clause. A number never changes and is never
+reused, so new test cases are added at the end of ``CLAUSES``.
 
 A test case that is added, removed, reworded or sends something else needs a new version:
 ``tests/conformance/test_catalogue.py`` and ``make docs`` fail until the last entry has the digest
@@ -16,7 +16,8 @@ from typing import NamedTuple
 class CatalogueVersion(NamedTuple):
     """A version; ``digest`` is the digest of the catalogue (:func:`listing.digest`).
 
-    ``clauses`` is how many clauses there were, and ``of_clauses`` their digest.
+    ``what`` says what has changed. ``clauses`` is the number of clauses in that version, and
+    ``of_clauses`` the digest of their names.
     """
 
     number: int
@@ -26,7 +27,7 @@ class CatalogueVersion(NamedTuple):
     of_clauses: str
 
 
-HISTORY = (CatalogueVersion(1, "8dddd4a45e6d", "the first version", 85, "bbcba3667264"),)
+HISTORY = (CatalogueVersion(1, "e994354bf430", "the first version", 85, "bbcba3667264"),)
 VERSION = HISTORY[-1].number
 
 # The test cases by the number of their clause, from 1.

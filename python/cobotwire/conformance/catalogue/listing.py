@@ -16,12 +16,12 @@ from cobotwire.conformance.suite import Group, Suite, TestCase
 from cobotwire.protocol.table import Command, Table
 
 SUITES: tuple[Suite[Any], ...] = (DEVICES, CLIENTS, CODECS)
-# The number of characters of a digest that are written.
+# Digests are cut to this many characters.
 SHOWN = 12
 
 
 class Selected(NamedTuple):
-    """The test cases of a group for a command; without a command: those for the whole line."""
+    """The test cases of a group for a command; ``None``: they test the line as a whole."""
 
     command: Command | None
     group: Group[Any]
@@ -67,14 +67,14 @@ def _cases(cases: Iterable[TestCase]) -> list[list[str]]:
 
 
 def misnumbered() -> str:
-    """Return what is wrong with the numbers of the clauses; empty: nothing."""
+    """Return what is wrong with the numbers of the clauses; empty if nothing is."""
     for each in HISTORY:
         if _digest(CLAUSES[: each.clauses]) != each.of_clauses:
             return f"the first {each.clauses} clauses are not those of version {each.number}"
     for case in (case.id for suite in SUITES for case in suite.cases):
         if case not in NUMBERS:
             return f"add {case} at the end of CLAUSES in catalogue/history.py"
-    return "" if len(NUMBERS) == len(CLAUSES) else "a test case has two clauses"
+    return "" if len(NUMBERS) == len(CLAUSES) else "CLAUSES names a test case twice"
 
 
 def outdated() -> str:

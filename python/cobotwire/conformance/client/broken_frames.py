@@ -14,14 +14,15 @@ from cobotwire.conformance.hex_text import shown
 from cobotwire.protocol.table import Command, FrameFormat, Table
 from cobotwire.simulator.peer import IDLE_SECONDS
 
-# Longer frames are shown in part; most editions have none.
+# Of a longer frame only the start is shown; most editions have no frame of this size.
 MOST = 40
 
 
 def joined(pieces: Sequence[Received]) -> list[Received]:
     """Return the broken frames and the stray bytes that consecutive pieces of noise make up.
 
-    Noise that begins no frame belongs to the frame before it, if it follows at once.
+    Noise that does not begin a frame is added to the broken frame before it, if no pause lies
+    between them.
     """
     found: list[Received] = []
     for piece in pieces:
@@ -74,7 +75,7 @@ def described(table: Table, noise: Noise) -> str:
 
 
 def _right_end(frame: FrameFormat, data: bytes) -> str:
-    """Describe how a frame must end, and after how many bytes by its LEN."""
+    """Describe the end that a frame must have, and how many bytes precede it according to LEN."""
     total = frame.read_length(data) + frame.overhead
     word = "the check" if frame.check else "the footer"
     right = frame.end(data[: total - frame.check_size])

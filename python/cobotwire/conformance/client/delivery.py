@@ -109,11 +109,11 @@ def require_possible(scenario: Scenario, table: Table) -> None:
 
 
 def _lacks(fault: Fault, table: Table) -> str:
-    """Return what a fault needs and the edition lacks; empty: nothing."""
+    """Return what a fault needs and the edition lacks; empty if it lacks nothing."""
     if isinstance(fault, UnrequestedEvent) and not events_of(table):
         return "events"
     if isinstance(fault, OtherAddress) and len(table.frame.addresses) < 2:
-        return "replies of several addresses"
+        return "second address"
     return ""
 
 
@@ -156,7 +156,7 @@ class Delivery:
             return b""
         self._arm.reply = request.reply
         self._awaiting[self._count] = request
-        # Lost replies are never reported.
+        # A lost reply is never reported as sent, so its request is dropped here in the end.
         self._awaiting.pop(self._count - REMEMBERED, None)
         self._count += 1
         return self._faulty.receive(request.data)

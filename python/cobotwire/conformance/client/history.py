@@ -1,4 +1,4 @@
-"""The history of a run: what the referee has received, and when it sent each reply."""
+"""The history of a run: what the simulated arm has received, and when it sent each reply."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SHOWN = 6
 class Received:
     """Something that the client sent; times are seconds since the run began.
 
-    ``reply`` holds the bytes that an arm replies, without any fault. ``replied_at`` is when the
+    ``reply`` holds the bytes of the reply before any fault is applied. ``replied_at`` is when the
     last of them was sent; None: not yet, or they were lost.
     """
 
@@ -33,7 +33,7 @@ class Received:
 
     @property
     def data(self) -> bytes:
-        """The bytes; none for the text after a request, which was received as noise before."""
+        """The bytes; empty for the text after a request: its bytes are an earlier noise event."""
         if isinstance(self.event, TextReceived):
             return b""
         return self.event.data if isinstance(self.event, Noise) else self.event.frame.data
@@ -78,8 +78,8 @@ class Received:
 class History:
     """Everything that was received.
 
-    ``powered`` is whether the arm has power, ``released`` whether it then holds no joint. After
-    ``patience`` seconds, by the field notes, a reply never comes.
+    ``powered``: the arm has power. ``released``: it has power, but holds no joint. According to the
+    field notes, a reply that has not come after ``patience`` seconds never comes.
     """
 
     codec: Codec
@@ -125,7 +125,7 @@ class History:
         return None
 
     def evidence(self, now: Received) -> tuple[Exchange, ...]:
-        """Return the last exchanges in their order, as the referee saw them."""
+        """Return the last exchanges in the order of their times."""
         exchanges: list[Exchange] = []
         for entry in [*list(self.entries)[1 - SHOWN :], now]:
             if entry.data:

@@ -156,14 +156,14 @@ class Referee:
             self.requests += 1
 
     def _powered_devices(self) -> dict[int | None, tuple[bool, bool]]:
-        """Return for each device whether it has power, and whether it has, but holds no joint."""
+        """Return for each device whether it has power, and whether it then holds no joint."""
         return {
             address: (state.powered, state.powered and not any(state.enabled))
             for address, state in self._arm.states.items()
         }
 
     def _power_of(self, now: Received) -> tuple[bool, bool]:
-        """Return whether a receiver of a request had power, and whether no joint was held."""
+        """Return whether any receiver of a request had power, and whether none held a joint."""
         address = self._arm.table.frame.address(now.data) if now.is_frame else None
         powered, released = zip(*(self._power[each] for each in self._arm.receivers(address)))
         return any(powered), all(released)
@@ -179,7 +179,10 @@ class Referee:
             self._tally.observe(case, name)
 
     def _script_results(self) -> list[Result]:
-        """Return the results for the script as a whole; its failures are by command."""
+        """Return a result for each test case of the script that has no failure.
+
+        Failures are reported by command.
+        """
         results = []
         for case in SCRIPT.cases:
             if self._script is None:

@@ -39,7 +39,7 @@ _SCALES = (10, 100, 1000, 57.29577951308232)
 
 
 class ScriptLine(NamedTuple):
-    """A request that the client must send; ``place`` is its place in the script.
+    """A request that the client must send; ``place`` says where the script states it.
 
     ``variant`` is the index of its variant; None: the first that allows the values. ``address`` is
     that of the device; None: the edition's first one, if it has addresses.
@@ -135,7 +135,7 @@ class Script:
             yield Observation(ONCE, f"{line.place}: sent once more", line.command.name)
 
     def _out_of_turn(self, now: Received) -> Iterator[Observation]:
-        """Check a frame that is a later line, or not in the script."""
+        """Check a frame that matches a later line of the script, or no line."""
         rest = self._frames[self._at :]
         if now.data in rest:
             later = self._at + rest.index(now.data)

@@ -74,7 +74,7 @@ class Run:
         Args:
             table: the edition that it must conform to.
             implementation: the codec under test.
-            expected: failures that are known.
+            expected: the known failures.
             repeat: how often each question is asked; answers that differ are unstable.
             sources: where the spec defines each command, for the report.
             clock: gives the time in seconds, for the evidence.
@@ -127,7 +127,7 @@ class Run:
 
     def _ask(self, question: Question) -> None:
         if question.needs not in self.greeting.can:
-            self._unsupported(question, f"it does not offer to {question.needs}")
+            self._unsupported(question, f"it does not list the ability {question.needs!r}")
             return
         first: list[Observation] | None = None
         for _ in range(self._repeat):

@@ -25,7 +25,7 @@ Reading = TypeVar("Reading")
 # After SILENT queries in a row without any reply, another query shows whether the device is there;
 # it is sent up to PINGS times.
 SILENT, PINGS = 3, 2
-# How often a text is requested at most, until two replies are the same.
+# A text is requested until two replies are equal, at most this often.
 TEXT_ATTEMPTS = 5
 
 
@@ -65,7 +65,7 @@ class Noticed:
         reply_seconds: the times of the valid replies, by command.
         retried: the commands that were replied to only when they were sent again.
         acknowledged: the response to the first request of each command that may be acknowledged.
-        changes: how often each of these was sent and checked.
+        changes: how often each command that may be acknowledged was sent and checked.
         poses: the indices of the poses from which the arm has made a short motion, latest first.
     """
 
@@ -230,7 +230,8 @@ class Device:
     def known(self, command: Command | None = None) -> Known:
         """Return the arm's angles and coordinates by their units, for queries that take a position.
 
-        A row is empty if no valid reply reports it. If ``command`` takes no row, nothing is read.
+        A value is empty if no valid reply reports it. If ``command`` takes no list of numbers,
+        nothing is read.
         """
         if command is not None and not any(f.many for v in command.request for f in v.fields):
             return {}
@@ -246,7 +247,7 @@ class Device:
         return found
 
     def cannot_send(self, request: Request[Any]) -> str:
-        """Return why the edition does not allow a request; empty: it does."""
+        """Return why the edition does not allow a request; empty if it does."""
         try:
             self.requester.prepare(request)
         except UsageError as error:

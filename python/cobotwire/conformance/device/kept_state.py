@@ -29,13 +29,13 @@ from cobotwire.protocol.table import Command, Table
 
 # How many other changed values a failure names.
 MOST_NAMES = 12
-# How often a run looks for the request that has changed something, which takes seconds.
+# How often a run searches for the request that has changed something; a search takes seconds.
 SEARCHES = 3
 
 
 @dataclass(frozen=True, slots=True)
 class Malformed:
-    """A malformed request that was sent: what it is, its bytes, and what sends it again."""
+    """A malformed request that was sent: its description and bytes; ``again`` sends it again."""
 
     what: str
     data: bytes

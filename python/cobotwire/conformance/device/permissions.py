@@ -27,7 +27,7 @@ class Permissions:
     """What a run may do in addition to sending queries.
 
     ``workspace`` holds the lowest and highest angle of each joint in degrees, ``max_speed`` is in
-    percent of the highest. Without both nothing moves.
+    percent of the highest. Motion needs both.
     """
 
     classes: frozenset[str] = frozenset()
@@ -67,7 +67,7 @@ class Permissions:
         return cls(allowed, max_speed, ranges if "motion" in allowed else ())
 
     def missing(self, needed: frozenset[str]) -> str:
-        """Return the classes that are needed and not permitted, in words; empty: none."""
+        """Return the classes that are needed and not permitted, in words; empty if all are."""
         return ", ".join(name for name in PERMISSIONS if name in needed - self.classes)
 
 

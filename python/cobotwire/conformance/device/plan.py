@@ -20,7 +20,7 @@ class Step(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The command and the group, for people."""
+        """The command and the group, for messages."""
         return f"{self.command.name if self.command else 'the line'}: {self.group.name}"
 
     @property
@@ -29,7 +29,7 @@ class Step(NamedTuple):
         return self.group.name, self.command.name if self.command else ""
 
 
-# The verdicts of what was run.
+# The verdicts that show that a step was run.
 RAN = (Verdict.PASS, Verdict.FAIL)
 
 
@@ -66,11 +66,11 @@ class Plan:
         return [by_place[place] for place in self._found if place in by_place]
 
     def results(self, step: Step) -> list[Result]:
-        """Return the results that count; empty: the step is to be run."""
+        """Return the complete results of a step in the earlier report; empty: run the step."""
         return self._found.get(step.place, []) if step.place in self._complete() else []
 
     def _complete(self) -> set[tuple[str, str]]:
-        """Return the steps with results that count: not the last one before an early end."""
+        """Return the steps with complete results; the last before an early end may lack some."""
         whole = [place for place, found in self._found.items() if not any(map(_was_not_run, found))]
         if not self._resume:
             return set()

@@ -83,7 +83,7 @@ class Probe:
         self._tally.note(case, self._name, text)
 
     def not_timed(self, case: TestCase, reason: str) -> None:
-        """Give no verdict on a test case, unless it has failed: it was not observed in time."""
+        """Give no verdict on a test case that was not observed in time, unless it has failed."""
         if (case, self._name) in self._tally:
             self._tally.excuse(case, self._name, Cause.NOT_TIMED, reason)
 

@@ -17,7 +17,7 @@ def sent_last(table: Table, sent: Sequence[Exchange]) -> str:
 
 
 def unknown_ids(table: Table, data: bytes) -> str:
-    """Return which unknown ids the bytes hold, in words; empty without one.
+    """Return which unknown ids the bytes hold, in words; empty if they hold none.
 
     A device may read an incomplete request, together with the bytes after it, as another request.
     """

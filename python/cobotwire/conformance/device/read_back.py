@@ -52,7 +52,7 @@ class Setting:
         own = {field.name: field for field in self.variant.fields}
         fields = self.query_variant.fields
         fields = tuple(f if f.const is not None else own[f.name] for f in fields)
-        # If an argument selects what is stored, only that.
+        # An argument that selects what is stored keeps its value.
         part = {name: (raw,) for name, raw in self.part}
         return requests(self.query, Variant(fields), limits={**self._limits, **part})
 
@@ -307,7 +307,7 @@ def setter_of(table: Table, query: Command, value: int) -> Command | None:
 
 
 def _query_variant(query: Command, variant: Variant) -> Variant | None:
-    """Return the query's fullest variant whose arguments are all arguments of the setting, too."""
+    """Return the query variant with the most arguments that the setting has, too, and no others."""
     names = {field.name for field in variant.fields}
     fitting = [f for f in query.request if set(named_fields((f,))) <= names]
     return max(fitting, key=lambda f: len(f.fields), default=None)

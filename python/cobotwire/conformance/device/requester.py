@@ -65,7 +65,7 @@ class Requester:
         self._replied: list[EncodedRequest] = []
         # The one-way requests that may still be acknowledged, oldest first.
         self._unacknowledged: list[Response] = []
-        # What the device has sent without a request, each with when it was received.
+        # The events that the device has sent, each with the time at which it was received.
         self.events: list[tuple[float, EventReceived]] = []
         # How long the slowest acknowledgement took, motions excepted; None: there was none.
         self._slowest: float | None = None
@@ -218,7 +218,7 @@ class Requester:
     def _read_text(
         self, response: Response, variant: TextReply, received: bytes, seconds: float
     ) -> None:
-        """Find the text in what was received; the rest is frames and noise like any other."""
+        """Find the text in the received bytes; the framer gets the rest."""
         begins = received.find(variant.prefixes[0].encode("ascii"))
         if begins < 0:
             self._sort(response, self._framer.feed(received))
@@ -256,7 +256,7 @@ class Requester:
         self._keep(response, self._diagnoser.feed(events))
 
     def _owner(self, frame: Frame, response: Response) -> Response | None:
-        """Return to which request a frame replies; None: to none.
+        """Return the response that a frame belongs to; None if it replies to no request.
 
         A late acknowledgement belongs to the oldest request that can have it.
         """

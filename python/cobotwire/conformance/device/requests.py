@@ -15,7 +15,7 @@ from cobotwire.protocol.table import Command, Variant
 
 
 def as_row(value: Any) -> tuple[Any, ...]:
-    """Return the numbers that a field holds, whether it is one number or a row."""
+    """Return the numbers that a field holds, whether it holds one number or several."""
     return tuple(value) if isinstance(value, tuple | list) else (value,)
 
 

@@ -13,7 +13,7 @@ Kind = TypeVar("Kind", bound=Effect)
 
 
 class Reporter(NamedTuple):
-    """A query that reports a state in a field of its reply; ``at`` are its indices."""
+    """A query that reports a state in a field; ``at`` names the arguments that index the state."""
 
     state: str
     query: Command
@@ -63,7 +63,7 @@ def reported(command: Command) -> tuple[str, ...]:
 
 
 def reporters(table: Table, state: str, *, assumed: bool = False) -> Iterator[Reporter]:
-    """Yield the queries that report a state; ``assumed``: also if no source says so."""
+    """Yield the queries that report a state; with ``assumed`` also those that no source states."""
     for command in table.commands:
         effect = effect_of(command) if assumed else stated_effect(command)
         if isinstance(effect, Reports) and not command.event:

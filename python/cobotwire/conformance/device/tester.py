@@ -290,12 +290,13 @@ class Tester:
         still = [str(at) for at, angle in enumerate(angles, 1) if abs(angle) < AWAY]
         if still:
             self.report.untested = (
-                f"Not tested away from zero: joint {', '.join(still)}. There, a wrong scale, order "
-                "or direction does not show; with --allow motion the arm is also tested elsewhere."
+                f"Not tested away from zero: joint {', '.join(still)}. At zero, a wrong scale, "
+                "order or direction does not show; with --allow motion the arm is also tested "
+                "elsewhere."
             )
 
     def _note_unread(self) -> None:
-        """Report the commands that were sent, but with an effect that nothing shows."""
+        """Report the commands that were sent, but have an effect that no query shows."""
         after = {case.id for case in AFTER_CHANGE_OR_REPLY}
         malformed = {group.name for group in SUITE.groups if "malformed" in group.permission}
         ran = [r for r in self.report.results if r.command and r.verdict in RAN]
@@ -303,7 +304,7 @@ class Tester:
         sent = sorted({r.command for r in ran if r.case in after} - tested)
         unread = [name for name in sent if not taken(self.table, self.table.command(name))]
         if unread:
-            text = f"Not tested: the effect of {', '.join(unread)}; only the response to it."
+            text = f"Not tested: the effect of {', '.join(unread)}; only the response was checked."
             self.report.untested = f"{self.report.untested} {text}".strip()
 
     def _read_version(self) -> None:

@@ -13,7 +13,7 @@ from cobotwire.conformance.reports.grouped import columns, matrix, rows, title_o
 
 # Longer texts are shortened to this many characters.
 LONGEST = 200
-# For a test case that passed, the page shows this many exchanges, the last ones; the JSON report
+# For a test case that passed, the page shows only the last exchanges, this many; the JSON report
 # has more.
 OF_PASSES = 3
 # How many further failures of a test case it describes.
@@ -89,7 +89,7 @@ def matrix_of(report: Report) -> Iterator[Element]:
         lines.append(element("tr", element("th", link_to(command), scope="row"), *_row(found)))
     yield heading("matrix", "Commands and test cases")
     signs = ", ".join(f"{sign} {cause or verdict}" for (verdict, cause), sign in SIGNS.items())
-    yield element("p", f"{signs}. A command leads to its results.", class_="faint")
+    yield element("p", f"{signs}. Each command links to its results.", class_="faint")
     head = element("thead", element("tr", element("th", "command"), *heads))
     table = element("table", head, element("tbody", *lines), class_="matrix")
     yield element("div", table, class_="scroll", tabindex="0")

@@ -50,7 +50,7 @@ def _outcome(result: Result | None) -> str:
 
 
 def counts(rows: Sequence[Row], index: int) -> str:
-    """Return how often each verdict is in one report: ``11 pass, 1 fail``; empty: never."""
+    """Return how often each verdict is in one report: ``11 pass, 1 fail``; empty if none."""
     verdicts = Counter(
         next(verdict for verdict in Verdict if row.outcomes[index].startswith(verdict))
         for row in rows

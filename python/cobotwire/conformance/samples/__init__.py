@@ -1,7 +1,7 @@
 """Derive from a table every value that test cases send or expect.
 
-Values are ordinary, corners, illegal, plain (the request that does the least), harmless, or
-revealing: a wrong scale, sign or order changes them. All testers use them.
+The kinds of values are: ordinary, corner, illegal, plain (the request that does the least),
+harmless, and revealing (a wrong scale, sign or order changes them). All testers use them.
 """
 
 from cobotwire.conformance.samples.physical import named_values, physical_values

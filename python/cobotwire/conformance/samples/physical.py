@@ -16,7 +16,7 @@ Numbers = tuple[Number, Number]
 
 # Texts that differ at every position, made of characters that a name may have.
 _TEXTS = (("cobot 1", "pass-word 2"), ("A", "B8"))
-# The ordinary values of bytes, texts and lists that are set one after the other.
+# The turns of the ordinary values that bytes, texts and lists are set to, one after the other.
 _TURNS = (0, 7)
 # Fractions of the distance from zero to an end. All differ, and none is the double of another, so
 # that each number of a row is recognised.
@@ -90,7 +90,7 @@ def _fractions(number: Number) -> list[float]:
 
 
 def wrong_counts(variant: Variant) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield values with a row that has one element too few, or one too many."""
+    """Yield values with a list that has one element too few, or one too many."""
     values = named_values(variant, ordinary(variant))
     for field in variant.fields:
         row = values[field.name]

@@ -40,8 +40,8 @@ firmware: ""
 acknowledgements: unknown
 """
 IXIT = """\
-# Implementation extra information for testing (IXIT): what a run must know of the device. Options
-# of the command line come first. Remove the # before what you state.
+# Implementation extra information for testing (IXIT): what a run must know of the device.
+# Command-line options override it. Remove the # before each value that you state.
 ixit:
   # linger: 4            # milliseconds to listen after a reply
   # workspace: "-30:30"  # degrees in which the arm may move; moving also needs --allow motion
@@ -54,8 +54,8 @@ ixit:
 """
 COMMANDS = """\
 # implemented: tested. optional: tested, but silence is no failure. absent: not tested, except that
-# it must not reply. A command that is left out is implemented, and those that are marked as
-# mandatory cannot be anything else.
+# it must not reply. A command that is left out counts as implemented. Those that are marked as
+# mandatory must be implemented.
 commands:
 """
 
@@ -120,7 +120,7 @@ class Statement:
         return self.commands.get(command.name) is Support.ABSENT
 
     def deselected(self, command: Command) -> str:
-        """Return why a command is not tested; empty: it is."""
+        """Return why a command is not tested; empty if it is."""
         if self.lacks(command):
             return f"The statement declares {command.name} absent."
         if not self.fitted.get(command.family, True):

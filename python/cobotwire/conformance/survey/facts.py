@@ -99,7 +99,7 @@ def _stated(command: Command) -> Iterator[tuple[str, str, str]]:
     yield from ((command.name, "command", aspect) for aspect in of_command)
     yield from ((command.name, "reply", aspect) for aspect in of_reply)
     for part, variants in (("request", command.request), ("reply", command.reply)):
-        # Of a field in several variants, that of the longest one counts, as in the generator.
+        # If several variants have a field, the longest one decides, as in the generator.
         longest = sorted(variants, key=lambda variant: -len(variant.fields))
         fields = {field.name: field for variant in reversed(longest) for field in variant.fields}
         for field in fields.values():

@@ -37,7 +37,7 @@ def questions(table: Table) -> tuple[list[Request[Any]], dict[str, str]]:
 
 
 class RecordedTransport(MemoryTransport):
-    """A transport to the arm of a recording, which replies as it did.
+    """A transport to the arm of a recording, which replies as in the recording.
 
     A request that was not recorded raises NotSupported: silence would prove nothing.
 

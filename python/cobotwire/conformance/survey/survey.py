@@ -355,7 +355,7 @@ def states(command: Command) -> tuple[str, ...]:
 
 
 def _decides(step: Step) -> str:
-    """Return the aspect of a fact: if an earlier file decided that fact, the step has been run."""
+    """Return the aspect of the fact that a step decides; a step with a decided fact is skipped."""
     return "present" if step.group is queries.QUERIES else "effect"
 
 

@@ -1,1 +1,1 @@
-"""The test cases for what a client sends, one small function a group."""
+"""The test cases for what a client sends, one small function for each group."""

@@ -20,7 +20,7 @@ from cobotwire.conformance.samples.physical import named_values
 from cobotwire.conformance.samples.raw import plainest
 from cobotwire.protocol.table import Command, Field, Table, Variant
 
-# Exceptions that it raises by accident. Its own checks raise its own classes.
+# Exceptions that the library raises by accident; its checks raise classes of its own.
 _BY_ACCIDENT = (struct.error, TypeError, ValueError, IndexError, KeyError, AttributeError)
 
 
@@ -35,7 +35,10 @@ class _Rejected(Exception):
 
 
 class _Port:
-    """The part of ``serial.Serial`` that it uses. Without a reply, a write raises its bytes."""
+    """The part of ``serial.Serial`` that the library uses.
+
+    If there is no reply to give, ``write`` raises :class:`_Wrote` with the bytes.
+    """
 
     def __init__(self, reply: bytes | None) -> None:
         self._reply = reply
@@ -105,7 +108,7 @@ class Pymycobot:
         }
 
     def _peer(self, reply: bytes | None) -> Any:
-        """Return an object of its class without opening a port or sleeping 1.5 s."""
+        """Return an instance of the library's class without opening a port or sleeping 1.5 s."""
         peer = object.__new__(self._kind)
         module = sys.modules[self._kind.__module__]
         module.CommandGenerator.__init__(peer)
@@ -121,7 +124,7 @@ class Pymycobot:
         if call is None:
             return {"unsupported": f"pymycobot has no {command.name}"}
         try:
-            _without_output(call, _arguments(command, question["fields"]))
+            _call(call, _arguments(command, question["fields"]))
         except _Wrote as wrote:
             return {"bytes": wrote.data.hex()}
         return {"error": "nothing was written"}
@@ -134,7 +137,7 @@ class Pymycobot:
             return {"unsupported": f"pymycobot has no {command.name}"}
         shortest = min(command.request, key=lambda variant: variant.size)
         arguments = _arguments(command, named_values(shortest, plainest(shortest)))
-        result = _without_output(call, arguments)
+        result = _call(call, arguments)
         if result is None or result == -1:
             return {"error": f"it returns {result}"}
         size = len(self._table.frame.data(data, "reply"))
@@ -144,7 +147,7 @@ class Pymycobot:
         return {"command": command.name, "fields": _by_name(variants[0], result)}
 
 
-def _without_output(call: Any, arguments: list[Any]) -> Any:
+def _call(call: Any, arguments: list[Any]) -> Any:
     """Call a method; return -1 if it rejects the arguments or the bytes."""
     try:
         return call(*arguments)

@@ -15,7 +15,7 @@ from cobotwire.conformance.samples.raw import Sample, illegal_samples, ordinary,
 from cobotwire.conformance.suite import Group, TestCase
 from cobotwire.protocol.table import Command, Direction, Table, Variant
 
-# Derive from a variant: samples; and physical values, each with a name for the question.
+# Functions of a variant: one yields samples, the other pairs of a question's name and its values.
 SamplesOf = Callable[[Variant], Iterator[Sample]]
 ValuesOf = Callable[[Variant], Iterator[tuple[str, Json]]]
 
@@ -65,13 +65,13 @@ def frame_of(table: Table, id: int, data: bytes, direction: Direction = "request
 
 
 def ordinary_frame(table: Table, variant: CommandVariant, turn: int = 0) -> bytes:
-    """Return the frame of a variant with ordinary values, which differ by ``turn``."""
+    """Return the frame of a variant with ordinary values; another ``turn`` gives other values."""
     data = variant.variant.pack(ordinary(variant.variant, turn=turn))
     return frame_of(table, variant.command.id, data, variant.direction)
 
 
 def _encoding(samples_of: SamplesOf, values_of: ValuesOf, codec: Codec) -> Iterator[Question]:
-    """Yield questions that encode samples, except illegal texts, and other values."""
+    """Yield questions that encode samples and other values; skip bytes that are no legal text."""
     for variant in variants_of(codec.table):
         for sample in samples_of(variant.variant):
             with suppress(UnicodeDecodeError):
@@ -100,7 +100,7 @@ def _decoding(samples_of: SamplesOf, codec: Codec) -> Iterator[Question]:
 
 
 def decode(codec: Codec, direction: Direction, of: str, name: str, data: bytes) -> Question:
-    """Return the question that decodes bytes; an empty ``of`` leaves the command open."""
+    """Return the question that decodes bytes; with an empty ``of`` it names no command."""
     ask: Json = {"do": "decode", "direction": direction, "bytes": hexed(data)}
     if of:
         ask["command"] = of
@@ -120,7 +120,7 @@ REJECTED_VALUES = Group(
     "rejected values",
     (ENCODE_REJECTS, ENCODE_BYTES),
     partial(_encoding, illegal_samples, wrong_counts),
-    sends="Values that are not allowed, and rows with too few and too many numbers, to be encoded.",
+    sends="Values that are not allowed, and lists with too few or too many numbers, to be encoded.",
     subject="each variant of each message",
 )
 DECODING = Group(

@@ -1,4 +1,4 @@
-"""Questions about bytes that are not a legal frame, or that several commands share."""
+"""Questions about bytes that are not a legal frame, and about ids that several commands share."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from cobotwire.protocol.table import Table
 
 
 def _damaged(codec: Codec) -> Iterator[Question]:
-    """Yield each message with a wrong byte outside its data, cut short, and too long."""
+    """Yield each message with a wrong byte outside its data; also too short and too long."""
     for variant in variants_of(codec.table):
         for name, data in damages(codec.table, ordinary_frame(codec.table, variant)):
             place = f"{variant.label}/{name}"
@@ -65,7 +65,7 @@ def _every_id(codec: Codec) -> Iterator[Question]:
 
 
 def _shared_ids(codec: Codec) -> Iterator[Question]:
-    """Yield each message without the name of its command."""
+    """Yield calls that decode each message without naming its command."""
     for variant in variants_of(codec.table):
         for turn in (0, 7):
             data = ordinary_frame(codec.table, variant, turn)
@@ -73,7 +73,7 @@ def _shared_ids(codec: Codec) -> Iterator[Question]:
 
 
 def _other_commands(codec: Codec) -> Iterator[Question]:
-    """Yield each message under the name of a command with another id: it must be rejected."""
+    """Yield calls that name a command with another id: the message must be rejected."""
     variants = list(variants_of(codec.table))
     for variant in variants:
         direction, id = variant.direction, variant.command.id
@@ -88,7 +88,7 @@ DAMAGED = Group(
     "damaged frames",
     REJECTS,
     _damaged,
-    sends="Frames with a wrong byte outside their data, cut short, and too long.",
+    sends="Frames with a wrong byte outside their data, frames cut short, and frames too long.",
     subject="each variant of each message",
 )
 EVERY_ID = Group(
@@ -102,13 +102,13 @@ SHARED_IDS = Group(
     "shared ids",
     (DECODE_VALUES, *REJECTS),
     _shared_ids,
-    sends="Frames without the name of their command.",
+    sends="Calls that decode a frame without naming its command.",
     subject="each variant of each message",
 )
 OTHER_COMMANDS = Group(
     "other commands",
     REJECTS,
     _other_commands,
-    sends="Frames under the name of another command.",
+    sends="Calls that decode a frame and name another command.",
     subject="each variant of each message",
 )

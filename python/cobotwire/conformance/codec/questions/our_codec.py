@@ -66,7 +66,7 @@ class OurCodec:
 
 
 def events_of(framer: Framer, chunk: str | None) -> list[Json]:
-    """Return the events that a chunk, or a silence, makes certain."""
+    """Return the events that a framer reports after a chunk, or after a silence (None)."""
     events = framer.flush() if chunk is None else framer.feed(bytes.fromhex(chunk))
     return [
         {"noise": hexed(event.data), "offset": event.offset, "reason": event.reason}

@@ -20,7 +20,7 @@ class Question:
     """One question of ``docs/codec-protocol.md`` with the answer of the reference codec.
 
     ``name`` is unique and stable: files of expected failures use it. ``case`` is the test case
-    that the answer is checked by. ``ask`` lacks the ``id``. ``expect`` is the right answer.
+    that checks the answer. ``ask`` is the question without its ``id``, ``expect`` the right answer.
     """
 
     name: str

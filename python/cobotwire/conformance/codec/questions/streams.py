@@ -29,7 +29,7 @@ STREAM_FRAMES = TestCase(
 )
 STREAM_CHUNKS = TestCase(
     "stream-chunks",
-    "A frame is reported with the chunk, or the silence, that makes it certain.",
+    "A frame is reported as soon as the received bytes, or a silence after them, prove it.",
     SOURCE,
 )
 STREAM_NOISE = TestCase(
@@ -66,7 +66,7 @@ def _streams(codec: Codec) -> Iterator[Question]:
             yield from _silences(codec, variant)
     for listening in LISTENING:
         matching = [variant for variant in variants if listening in (variant.direction, "both")]
-        yield from _inside_each_other(codec, listening, matching)
+        yield from _false_headers(codec, listening, matching)
         yield from _whole_inside(codec, listening, matching)
         for seed in range(RANDOM_STREAMS):
             yield _random(codec, listening, matching, seed)
@@ -103,7 +103,7 @@ def _chance(seed: str) -> random.Random:
 
 
 def _silences(codec: Codec, variant: CommandVariant) -> Iterator[Question]:
-    """Yield a silence before the next frame: a cut frame must not claim it."""
+    """Yield a damaged frame, a silence and a frame that the damaged one must not swallow."""
     whole = ordinary_frame(codec.table, variant)
     after = ordinary_frame(codec.table, variant, turn=7)
     for name, broken in damages(codec.table, whole):
@@ -111,7 +111,7 @@ def _silences(codec: Codec, variant: CommandVariant) -> Iterator[Question]:
         yield stream(codec, variant.direction, variant.command.name, place, [broken, None, after])
 
 
-def _inside_each_other(
+def _false_headers(
     codec: Codec, listening: Listening, variants: Sequence[CommandVariant]
 ) -> Iterator[Question]:
     """Yield false headers before true frames; some are completed by the bytes that follow."""
@@ -199,7 +199,6 @@ STREAMS = Group(
     "streams",
     (STREAM_FRAMES, STREAM_CHUNKS, STREAM_NOISE, NOISE_REASON),
     _streams,
-    sends="Streams of frames, frames around frames, damaged frames and noise, in chunks, with "
-    "silences.",
+    sends="Streams of frames, nested frames, damaged frames and noise, in chunks, with silences.",
     subject="each variant of each message, and random streams",
 )

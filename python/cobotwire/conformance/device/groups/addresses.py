@@ -26,7 +26,7 @@ def _arms(table: Table) -> list[Address]:
 
 
 def _one_moves(probe: Probe) -> None:
-    """Move the devices one after another, within the permissions; read all of them."""
+    """Move one permitted device after another; read the joints of all devices after each."""
     device, mover, arms = probe.device, Mover(probe.device), _arms(probe.device.edition)
     driven = [arm for arm in arms if arm == device.address] or arms
     before = {arm.name: _pose(device, arm) for arm in arms}
@@ -69,8 +69,8 @@ ADDRESSES = Group(
     _one_moves,
     _is_sent_to_several,
     sends=(
-        "A pose to each device in turn, or only to that of the run's address; the joints of each "
-        "device are read after it."
+        "A pose to each device in turn, or only to the device of the run's address; after each, "
+        "the joints of all devices are read."
     ),
     subject="the command that moves all joints, if several devices with addresses have them",
 )

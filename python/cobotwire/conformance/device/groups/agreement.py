@@ -24,7 +24,7 @@ APART = {"millimetre": 1.0, "tick": 2.0}
 
 
 class _Reported(NamedTuple):
-    """A number that a query reports, with its name for people."""
+    """A number that a query reports, with its name in messages."""
 
     name: str
     number: Number
@@ -42,7 +42,7 @@ def _has_equals(table: Table, command: Command) -> bool:
 
 
 def _agree(probe: Probe) -> None:
-    """Compare with each of the other queries, joint by joint."""
+    """Compare the query with each other query of the quantity, number by number."""
     if probe.device.permissions.workspace:
         mover = Mover(probe.device)
         mover.go(mover.pose(0))
@@ -65,7 +65,7 @@ def _agree(probe: Probe) -> None:
 def _reading(probe: Probe, query: Request[Any]) -> list[_Reported]:
     """Return the numbers of a query's reply, without those that repeat its arguments.
 
-    A reply with values that are not allowed agrees with nothing.
+    A reply with values that are not allowed fails the test case.
 
     Raises:
         NotSupported: no valid reply comes.
@@ -90,7 +90,7 @@ def _reading(probe: Probe, query: Request[Any]) -> list[_Reported]:
 
 
 def _compare(probe: Probe, other: Command, pairs: list[tuple[_Reported, _Reported]]) -> None:
-    """Compare two readings, number by number, in the same unit; the first one counts as right."""
+    """Compare two readings, number by number, in the same unit; the first is taken as right."""
     table, compared, wrong = probe.device.table, list[Pair](), list[str]()
     encoders, near = table.robot.encoders, {**APART, "degree": angle_tolerance(table) + 0.001}
     for one, two in pairs:
@@ -116,7 +116,7 @@ def _likely(mine: Command, other: Command, compared: list[Pair]) -> str:
         (mine, other, likely_mistake(compared)),
         (other, mine, likely_mistake([pair.exchanged for pair in compared])),
     ]
-    # "No mistake" and "another order" are the same, whichever query is right: they come last.
+    # These two guesses do not depend on which query is right, so any other guess comes first.
     guesses.sort(key=lambda guess: guess[2] in ("", ANOTHER_ORDER))
     right, wrong, mistake = guesses[0]
     return f"; if {right.name} is right, {wrong.name} has {mistake}" if mistake else ""
@@ -131,8 +131,8 @@ def _matching(mine: list[_Reported], theirs: list[_Reported]) -> list[_Reported]
     return mine if len(mine) == len(theirs) else []
 
 
-# The tolerance between calculated and reported rows, by unit: joints rest on ticks. Angles that
-# differ by more may still be the same pose.
+# The tolerance between calculated and reported numbers, by unit, because joints rest on ticks.
+# Angles that differ by more may still be the same pose.
 CALCULATED = {"degree": 3.0, "millimetre": 2.5}
 # The roles of the queries that report what is calculated.
 PLACES: dict[str, Role] = {"angles": "joints", "coords": "coordinates"}
@@ -166,7 +166,7 @@ def _calculate(probe: Probe, computes: Computes) -> None:
 
 
 def _position(device: Device, role: Role) -> tuple[float, ...]:
-    """Return the row that the query in a role reports; empty if none comes."""
+    """Return the numbers that the query in a role reports; empty without a valid reply."""
     query = device.command(role)
     reply = None if query is None else device.read(query.request_type())
     return () if reply is None else tuple(reply.result)

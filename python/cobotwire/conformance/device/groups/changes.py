@@ -13,7 +13,7 @@ from cobotwire.protocol.table import Command
 
 # Wait for a second acknowledgement only the first AWAITED times that a command is sent.
 AWAITED = 4
-# What an acknowledgement reports: done.
+# The value of an acknowledgement that reports success.
 DONE = 1
 
 
@@ -32,7 +32,7 @@ def _is_replied_to(command: Command) -> bool:
 SILENT = TestCase("one-way-silent", "A one-way request is not replied to.", applies=_is_silent)
 ACKNOWLEDGED = TestCase(
     "acknowledgement",
-    "At most one acknowledgement comes; it is legal and reports 1: done.",
+    "At most one acknowledgement comes; it is legal and reports 1 (done).",
     applies=_may_be_acknowledged,
 )
 REPLIED = TestCase(

@@ -1,4 +1,4 @@
-"""The statement of the device is true: commands declared absent are absent, and its facts hold."""
+"""The conformance statement of the device is true: absent commands are absent, its facts hold."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def _absent(probe: Probe) -> None:
     if shared:
         raise NotSupported(f"{', '.join(shared)}, which is not declared absent, has the same id")
     request = harmless(command)[0] if command.safety == "query" else _present(probe)
-    # Not counted as a query without a reply: silence is right here.
+    # Sent without being counted as an unanswered query, since silence is right here.
     response = device.requester.send(device.requester.prepare(request))
     reason = f"{command.name} is declared absent: expected no reply; received {response.summary}"
     probe.expect(ABSENT, not response.replies, reason)
@@ -60,7 +60,7 @@ def _present(probe: Probe) -> Request[Any]:
             saved = saved_value(probe.device, setting, query)
             if saved is not None and not saved.obstacle:
                 return saved.old
-    raise NotSupported("no value is known that would change nothing")
+    raise NotSupported("the present value cannot be read, so the setting could not be left alone")
 
 
 def _facts(probe: Probe) -> None:
@@ -80,7 +80,8 @@ def _facts(probe: Probe) -> None:
         acknowledged = bool(response.replies)
         right = acknowledged is (declared is Acknowledgements.ALL)
         was = "was acknowledged" if acknowledged else "was not acknowledged"
-        reason = f"{declared} changes are acknowledged, as declared; but {name} {was}"
+        stated = "every change is" if declared is Acknowledgements.ALL else "no change is"
+        reason = f"the statement declares that {stated} acknowledged; {name} {was}"
         probe.expect(ACKNOWLEDGEMENTS, right, reason)
 
 
@@ -90,7 +91,7 @@ DECLARED_ABSENT = Group(
     _absent,
     _shows,
     sends="The query, or the setting with its present value.",
-    subject="each command that the statement declares absent, if a reply would show it",
+    subject="each command that the statement declares absent, if a reply would prove it present",
     declared=True,
 )
 DECLARED_FACTS = Group(

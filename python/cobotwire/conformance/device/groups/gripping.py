@@ -66,7 +66,7 @@ def _reports_moving(probe: Probe, moving: Command) -> None:
 
 
 def opens(table: Table, command: Command) -> Cases | None:
-    """Return the cases of a command that open and close a gripper, if a query reports how wide."""
+    """Return the cases of a command that open and close a gripper, if a query reads its opening."""
     cases = does(Cases)(table, command)
     shown = reporter(table, "opening") is not None
     return cases if cases and shown and len(_openings(cases)) > 1 else None

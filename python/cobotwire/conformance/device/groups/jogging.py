@@ -16,9 +16,9 @@ from cobotwire.conformance.suite import Group
 from cobotwire.protocol.effects import Does, Moves
 from cobotwire.protocol.messages import Request
 
-# A step by unit: far more than a tick, but still near.
+# The length of a step, by unit: far more than a tick, but still short.
 DISTANCES = {"degree": 4.0, "millimetre": 8.0}
-# How far the other joints or axes may stray: joints rest on encoder ticks, and so move the end.
+# How far other joints or axes may stray: joints rest on encoder ticks, which also moves the end.
 STRAYS = {"degree": 0.6, "millimetre": 2.5}
 # Slow enough to be stopped near the start, in percent of the highest speed.
 SLOW = 20
@@ -61,7 +61,7 @@ class _Parts:
         return tuple(self.probe.device.require(self.query).result)
 
     def apart(self, one: Sequence[float], other: Sequence[float], often: float = 1.0) -> list[int]:
-        """Return where two positions differ by more than ``often`` times the value in STRAYS."""
+        """Return the indices at which two positions differ by more than ``often`` times STRAYS."""
         every = enumerate(zip(one, other, self.numbers))
         return [at for at, (a, b, n) in every if abs(a - b) > often * STRAYS[n.unit]]
 
@@ -72,7 +72,7 @@ class _Parts:
         return self.probe.command.request_type.from_fields(fields)
 
     def call(self, part: int) -> str:
-        """Return the call for a joint or axis, for people."""
+        """Return the start of the call for a joint or axis, for messages that complete it."""
         return f"{self.probe.command.name}({self.part.name}={part}"
 
     def expect_motion(self, moved: bool, detail: str = "") -> None:
@@ -84,8 +84,8 @@ class _Parts:
 def _nearby(probe: Probe, motion: Moves) -> None:
     """Move each joint or axis a short distance up and down.
 
-    An arm may reject targets that it cannot reach. If it does not move in a direction from any
-    pose, that direction is out of reach. An arm that moves in no direction fails.
+    An arm may reject targets that it cannot reach. A direction in which it moves from no pose is
+    taken as out of reach. An arm that moves in no direction fails.
     """
     parts = _Parts(probe, motion)
     stays = [
@@ -98,9 +98,9 @@ def _nearby(probe: Probe, motion: Moves) -> None:
 
 
 def _stays(parts: _Parts, part: int, at: int, sign: int) -> str | None:
-    """Move a joint or axis in one direction, from pose to pose, until it moves.
+    """Try to move a joint or axis in one direction, from one pose after another, until it moves.
 
-    Return what was sent and received if the arm never moves; None: it moves.
+    Return what was sent and received if the arm never moves; None if it moves.
     """
     probe, motion, numbers, stayed = parts.probe, parts.motion, parts.numbers, ""
     distance = sign * DISTANCES[numbers[at].unit]
@@ -149,9 +149,9 @@ def _jogs(probe: Probe, motion: Moves) -> None:
 
 
 def _jog(parts: _Parts, part: int, at: int | None, direction: int) -> list[float]:
-    """Jog a joint or axis in a direction, from pose to pose, until it moves.
+    """Try to jog a joint or axis in a direction, from one pose after another, until it moves.
 
-    Return by how much each joint or axis has moved; empty: nothing has.
+    Return by how much each joint or axis has moved; empty if nothing has.
     """
     probe, mover, device = parts.probe, parts.mover, parts.probe.device
     for which in mover.poses:
@@ -176,7 +176,7 @@ def _jog(parts: _Parts, part: int, at: int | None, direction: int) -> list[float
 def _stopped(parts: _Parts, seconds: float) -> Sequence[float]:
     """Stop, and return where the arm is then; expect that it stays there.
 
-    Without the stop it would move on in ``seconds``, by more than the value in STRAYS.
+    Without the stop it would move by more than STRAYS allows within ``seconds``.
     """
     probe, mover = parts.probe, parts.mover
     ending, stop = first(probe.device.table, HALTS), probe.device.command("stop")
@@ -215,7 +215,7 @@ COORDINATES = Group(
     "single coordinates",
     (ARRIVES, *AFTER_CHANGE),
     *for_found(TO_COORDINATE, _nearby),
-    sends="A target a short distance up and down along or about each axis.",
+    sends="Targets a short distance above and below the present coordinate of each axis.",
     subject="the command that moves the end to one coordinate",
 )
 STEPS = Group(

@@ -1,6 +1,6 @@
 """The arm ignores or rejects a malformed request, and replies to the next legal one.
 
-Only queries are damaged: whatever the firmware makes of them, nothing changes.
+Only queries are damaged, so that nothing changes even if the firmware accepts one.
 """
 
 from __future__ import annotations
@@ -26,7 +26,8 @@ from cobotwire.protocol.table import Command, FrameFormat, Table, Variant
 from cobotwire.session.request import EncodedRequest
 from cobotwire.simulator.faults.noise import NOISE
 
-# A request is sent in pieces up to ATTEMPTS times, until no pause exceeds LATE times the plan.
+# A request is sent in pieces until no pause exceeds LATE times the planned one, at most ATTEMPTS
+# times.
 ATTEMPTS, LATE = 3, 2
 MALFORMED = frozenset({"malformed"})
 # Classes of the simulator's catalogue: packets of the servo bus, text, and bytes of a header.
@@ -35,7 +36,7 @@ NOISES = (*PACKETS, "command error", "header bytes")
 
 WRONG_LENGTH = TestCase("wrong-length", "A request with a wrong LEN is not replied to.")
 WRONG_FOOTER = TestCase("wrong-footer", "A request with a wrong footer is not replied to.")
-CUT = TestCase("cut-request", "A request that breaks off is given up when the line is silent.")
+CUT = TestCase("cut-request", "An incomplete request is discarded when the line falls silent.")
 OUT_OF_RANGE = TestCase("out-of-range", "A request with a value that is not allowed is ignored.")
 UNKNOWN_ID = TestCase("unknown-id", "A request with an id that the edition lacks is ignored.")
 NOISE_BEFORE = TestCase("noise-before", "A request after noise is replied to.")
@@ -92,15 +93,15 @@ def _out_of_range(probe: Probe) -> None:
     sender = MalformedSender(probe, request)
     variant = probe.command.request[0]
     for what, _, data in wrong_values(probe.device.table, variant, request.frame):
-        # Another constant may mean another command.
+        # With another constant the frame may be a legal request of another command.
         if not probe.device.requester.is_legal(data):
             sender.send(OUT_OF_RANGE, what, data)
 
 
 def wrong_values(table: Table, variant: Variant, data: bytes) -> Iterator[tuple[str, bool, bytes]]:
-    """Yield a request with a number outside each field's range or list, if bytes can hold it.
+    """Yield requests with one number outside the range or list of its field.
 
-    Each comes with a text, and with whether the field has a list.
+    Each item is a description, whether the field has a list, and the frame.
     """
     frame, rest = table.frame, table.frame.data(data)
     id, address = frame.read_id(data), frame.address(data)
@@ -112,7 +113,10 @@ def wrong_values(table: Table, variant: Variant, data: bytes) -> Iterator[tuple[
 
 
 def forbidden(located: LocatedNumber) -> list[int]:
-    """Return unsigned values that are illegal, whichever way the firmware reads their sign."""
+    """Return values that a number without negative values does not allow.
+
+    They are illegal even if the firmware reads them as signed.
+    """
     choices, number = located.field.choices, located.number
     if number.minimum < 0:
         return []
@@ -188,7 +192,7 @@ def _together(probe: Probe, request: EncodedRequest) -> None:
 
 
 def _other(table: Table, command: Command) -> Command | None:
-    """Return another query without arguments, which is not slow and which the device has.
+    """Return another query without arguments, of those the one with the shortest deadline.
 
     None if the edition has no such query, or its replies do not name the command.
     """
@@ -243,7 +247,7 @@ def _unknown_ids(probe: Probe) -> None:
 
 
 def _free_ids(table: Table) -> list[int]:
-    """Return some ids that no command has: the ends, and some between."""
+    """Return some ids that no command has: the first, the last, and some between."""
     known = {command.id for command in table.commands}
     free = [id for id in range(256) if id not in known]
     return free[:1] + free[1:-1:24] + free[-1:]

@@ -33,13 +33,13 @@ STOPS = TestCase("stops", "A stop ends the motion, and the arm stays at rest.", 
 
 # The tolerance between sent and read values, by unit: one tick, and how far a tick moves the arm.
 NEAR = {"millimetre": 1.5, "tick": 1.0, "percent": 1.0}
-# After this time, in seconds, an arm on its way reports that it moves.
+# An arm must report that it moves once it has been on its way for this long, in seconds.
 UNDER_WAY = 0.1
 ARRIVED = "The arm had arrived before it could be observed on the way."
 # The period and the duration of the queries whether the arm moves, in seconds.
 PERIOD, OBSERVED = 0.01, 2.0
-# Where the limit and the target are, as shares of the joint's range in the workspace; and how far
-# beyond the limit a joint may come to rest, in degrees.
+# The distances of the limit and of the target from the present angle, as shares of the joint's
+# range in the workspace; and how far beyond the limit a joint may come to rest, in degrees.
 LIMIT, TARGET, BEYOND = 0.04, 0.10, 1.0
 # The pose from which the joints move.
 POSE = 2
@@ -252,7 +252,8 @@ REPLAYS = Group(
     _replays,
     is_replayed,
     sends=(
-        "What a query has reported at another pose; or samples, if it does not depend on the pose."
+        "The values that a query reported at another pose; or samples, if its reply does not "
+        "depend on the pose."
     ),
     subject="each motion with a target that a query reports",
 )

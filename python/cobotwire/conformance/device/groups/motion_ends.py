@@ -26,9 +26,9 @@ ENDS = TestCase(
 SLOW = 20
 # Seconds between two readings of the angles, and seconds without a change until the arm is at rest.
 PERIOD, RESTS = 0.01, 0.7
-# The name of the mode in which motions are interpolated: the end of other motions is not reported.
+# Names of the mode that interpolates motions. In other modes the ends of motions are not reported.
 INTERPOLATED = ("INTERPOLATION", "QUEUE")
-# The field of the query that reports whether the arm reports ends.
+# The field of the query that reports whether the arm reports the ends of motions.
 SWITCH = "motion_ends"
 
 
@@ -133,7 +133,10 @@ def _status(event: EventReceived) -> str:
 
 
 def _is_right(probe: Probe, event: EventReceived, *, stopped: bool) -> bool:
-    """Return whether the status reports success, or a stop, if the edition states one."""
+    """Return whether the status reports success, or a stop if the motion was stopped.
+
+    Any status is right for a stop if the edition states none.
+    """
     codes, field = probe.device.edition.robot.error_codes, event.message.variant.fields[-1]
     if not stopped:
         return event.command.refusal(event.message.fields) is None

@@ -1,4 +1,4 @@
-"""What shows while the arm is on its way: stops and pauses, speeds, and the next target."""
+"""Test cases while the arm is on its way: stops and pauses, speeds, and the next target."""
 
 from __future__ import annotations
 
@@ -47,7 +47,8 @@ TIMED = 0.5
 LONGEST, SOON = 20.0, 0.005
 # The names of the two modes.
 QUEUED, NEWEST = "INTERPOLATION", "REFRESH"
-# How far apart the targets are, and how far the arm must go to show its direction, in degrees.
+# The distance of both targets from the start, and how far the arm must go to show its direction,
+# in degrees.
 WAY, SHOWN = 8.0, 1.0
 # The speed of the motion upwards, in percent of the highest: slow enough for readings on the way.
 UPWARDS = 20
@@ -161,7 +162,7 @@ def _faster(probe: Probe) -> None:
 
 
 class _Departure(NamedTuple):
-    """How far a joint has moved, in degrees, and the bounds of the seconds since its command."""
+    """How far a joint has moved, in degrees, and bounds of the seconds since the request."""
 
     way: float
     least: float
@@ -212,7 +213,8 @@ class _Speeds(NamedTuple):
 def _speeds(table: Table, command: Command) -> _Speeds | None:
     """Return the first field of a query that has speeds in a unit of known size.
 
-    Return None if there is no such field, or if no commands move the joints and read their angles.
+    Return None if there is no such field, or if the edition lacks a command that moves the joints
+    or a query of their angles.
     """
     effect, encoders = does(Reports)(table, command), table.robot.encoders
     moves = table.find_role("joint targets") is not None and table.find_role("joints") is not None

@@ -54,7 +54,7 @@ REPEATS = TestCase(
 
 
 def is_query(table: Table, command: Command) -> bool:
-    """Return whether a command only reads."""
+    """Return whether a command is a query that must be replied to."""
     return command.safety == "query" and command.requires_reply
 
 
@@ -95,7 +95,7 @@ def _every(probe: Probe) -> list[Request[Any]]:
 
 
 def requests_of(command: Command, known: Known) -> list[Request[Any]]:
-    """Return a query with each set of arguments; ``known`` is where the arm is."""
+    """Return a query with each set of arguments; ``known`` is the known position of the arm."""
     return [
         query
         for variant in command.request
@@ -104,7 +104,7 @@ def requests_of(command: Command, known: Known) -> list[Request[Any]]:
 
 
 def is_framed_query(table: Table, command: Command) -> bool:
-    """Return whether a command only reads, and has a framed reply."""
+    """Return whether a command is a query with a framed reply."""
     return is_query(table, command) and bool(command.reply)
 
 
@@ -115,7 +115,7 @@ def _is_powered_query(table: Table, command: Command) -> bool:
 
 
 def _query_with_power(probe: Probe) -> None:
-    """Send the query twice after power on: the first reply may still show the state before."""
+    """Send the query twice after power on: a device whose first reply shows the old state fails."""
     device = probe.device
     was_off = POWER not in device.restore_at_end
     give_power(device)
@@ -148,7 +148,7 @@ def sample_of(device: Device, command: Command) -> Request[Any]:
 
 
 def _has_joint(probe: Probe, query: Request[Any]) -> bool:
-    """Return whether the device has the joint that a query names: some have fewer joints."""
+    """Return whether the device has the joint that a query names; some have fewer joints."""
     device = probe.device
     fewer = device.joints < device.table.joints
     return not fewer or query.fields.get("joint", 1) <= device.joints
@@ -194,7 +194,7 @@ def _expected_address(table: Table, response: Response) -> str:
         return ""
     if replier in table.frame.addresses:
         return f", address {replier:02X} ({address_name(table, replier)})"
-    return ", the address of a device that has all of these joints"
+    return ", the address of a device that has all joints that the request names"
 
 
 def _wrong_echo(call: str, response: Response, reply: ReceivedReply) -> str:

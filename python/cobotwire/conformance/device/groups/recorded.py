@@ -29,14 +29,14 @@ IN_ORDER = TestCase(
 
 CLEARED = TestCase("list-cleared", "A list that was cleared holds nothing.")
 
-# How many points are added; how many of the device's own are kept at most, to be added again.
+# How many points are added, and how many old points of the device are put back at most.
 ADDED, MOST_KEPT = 3, 50
 # If nothing else reports that a list is empty, this many zeros in a row mean that it is.
 ZEROS = 3
 
 
 class _List(NamedTuple):
-    """The commands of a list: what appends, what takes the first point, and what reports on it."""
+    """The commands that append to a list, take its first point, count it, and report it empty."""
 
     add: Command
     argument: Field
@@ -127,7 +127,7 @@ def _count(device: Device, points: _List) -> int:
 
 
 def _take_own(probe: Probe, points: _List, take: Command, count: int) -> list[tuple[float, ...]]:
-    """Take every point that is there, and return them; without a count, until zeros come."""
+    """Take all points from the list and return them; if no query counts them, stop at zeros."""
     own: list[tuple[float, ...]] = []
     while len(own) < (count if points.counter else ZEROS) or (
         not points.counter and any(map(any, own[-ZEROS:]))
@@ -186,7 +186,7 @@ RECORDED = Group(
     "recorded points",
     (IN_ORDER, *AFTER_CHANGE_OR_REPLY),
     *for_found(_counted, _in_order),
-    sends="Points that differ in each number, one by one; the number of points; each point.",
+    sends="Points that differ in each number, one by one; the queries that count and read them.",
     subject="the command that adds a point, if another one reads it and one counts them",
 )
 UNCOUNTED = Group(
@@ -194,7 +194,7 @@ UNCOUNTED = Group(
     (IN_ORDER, *AFTER_CHANGE_OR_REPLY),
     *for_found(_uncounted, _in_order),
     frozenset({"irreversible"}),
-    sends="Values that differ in each number, one by one; then what reads or counts them.",
+    sends="Values that differ in each number, one by one; then commands that read or count them.",
     subject="each other command that appends to a list, if another one reads or reports it",
 )
 CLEARS = Group(
@@ -202,6 +202,6 @@ CLEARS = Group(
     (CLEARED, *AFTER_CHANGE_OR_REPLY),
     *for_found(cleared, _clear),
     frozenset({"irreversible"}),
-    sends="A value that is added, the command, and what reads or reports on the list.",
+    sends="A value to append, the command, then the queries that read the list or report on it.",
     subject="each command that clears a list, if values can be added and read or counted",
 )

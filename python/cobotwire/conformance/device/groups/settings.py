@@ -140,7 +140,7 @@ def _send_wrong_values(probe: Probe, saved: SavedValue, present: Request[Any]) -
     device.request(present)
     encoded = device.requester.prepare(present)
     for what, listed, data in wrong_values(device.table, saved.setting.variant, encoded.frame):
-        # Another constant may mean another command.
+        # With another constant the frame may be a legal request of another command.
         if device.requester.is_legal(data):
             continue
         response = device.requester.send_bytes(encoded, data, what, device.timing.silence)
@@ -152,7 +152,7 @@ def _send_wrong_values(probe: Probe, saved: SavedValue, present: Request[Any]) -
         reply = after.valid and after.valid.message
         wrong = saved.setting.differences(present, reply)
         reason = f"{probe.command.name} with {what} ({shown(data)}) must change nothing"
-        # A number beyond its range may be taken for the nearest legal one.
+        # For a number beyond its range, the device may set the nearest legal one.
         limited = reply is not None and not listed
         probe.expect(KEPT, limited or not wrong, f"{reason}; {'; '.join(wrong)}")
         if wrong:

@@ -276,5 +276,5 @@ CALIBRATION = Group(
     *for_found(_calibration, _calibrate),
     frozenset({"irreversible"}),
     sends="The calibration, at a pose that is not zero: for each joint that it can name.",
-    subject="each command that permanently gives the present position a fixed number",
+    subject="each command that permanently assigns a fixed value to the present position",
 )
