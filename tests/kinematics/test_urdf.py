@@ -172,7 +172,7 @@ WRONG = {
     "no child": ('<joint name="a"/>', "joint 'a' names no child"),
     "two parents": (ARM + joint("", child="x"), "two joints lead to the link 'x'"),
     "two ends": (ARM + joint("", parent="x", child="z"), "--tip: the joints lead to y, z"),
-    "ring": (ARM + joint("", parent="x", child="base"), "or they are a ring"),
+    "ring": (ARM + joint("", parent="x", child="base"), "or they form a ring"),
     "slides": (
         joint("", kind="prismatic"),
         "'a' is prismatic; allowed: revolute, continuous, fixed",

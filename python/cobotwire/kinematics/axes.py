@@ -18,14 +18,14 @@ from cobotwire.protocol.robot import Shares
 
 # Sines of the angle between two axes: below the first they are parallel, below the second nearly.
 PARALLEL, NEARLY_PARALLEL = 1e-11, 0.1
-# In millimetres: below it, the next frame begins on the axis.
+# Below this distance, in millimetres, the next frame begins on the axis.
 ON_AXIS = 1e-9
 
 
 class Axis(NamedTuple):
     """The z axis of a frame that joints turn, and the frame of the next axis relative to it.
 
-    ``turned_by`` is as in a ``Link``; ``offset`` is added, in degrees.
+    ``turned_by`` is as in a ``Link``; ``offset`` is added to the angle, in degrees.
     """
 
     turned_by: Shares

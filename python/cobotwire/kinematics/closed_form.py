@@ -63,7 +63,7 @@ def solutions(geometry: Geometry, target: Pose, present: Sequence[float]) -> Ite
 
 
 def _beside(geometry: Geometry, target: Pose) -> tuple[float, float]:
-    """Return both first angles: the wrist lies beside the arm's plane by the fourth offset."""
+    """Return both angles of the first joint; ``d`` of the fourth link offsets the wrist."""
     reach, beside = geometry.links[5].d, geometry.links[3].d
     x, y = (p - reach * axis for p, axis in zip(target.origin[:2], target.z[:2]))
     aside = math.asin(_unit(beside / max(math.hypot(x, y), ROUNDING)))
@@ -72,7 +72,7 @@ def _beside(geometry: Geometry, target: Pose) -> tuple[float, float]:
 
 
 def _in_line(geometry: Geometry, target: Pose) -> tuple[float, float]:
-    """Return both first angles: the arm's plane goes through the centre of the wrist."""
+    """Return both angles of the first joint that turn the arm's plane through the wrist."""
     x, y = (p - geometry.links[5].d * axis for p, axis in zip(target.origin[:2], target.z[:2]))
     towards = math.atan2(y, x)
     return towards, towards + math.pi
@@ -105,9 +105,10 @@ def _spherical(geometry: Geometry, seen: Pose, now: Sequence[float]) -> Iterator
 
 
 def _wrists(across: Sequence[float], fifth: float, sixth: float) -> Iterator[tuple[float, float]]:
-    """Yield fifth and sixth angles, from the target's axes along the axis of the fourth joint.
+    """Yield pairs of the fifth and the sixth angle.
 
-    A straight wrist leaves the sixth free: it stays, or turns as far as the limits require.
+    ``across`` has the components of the target's axes along the axis of the fourth joint. A
+    straight wrist leaves the sixth angle free: its present value comes first, then others.
     """
     u, v, cosine = across
     for side in (1, -1) if math.sin(fifth) >= 0 else (-1, 1):
@@ -157,5 +158,5 @@ def _nearest_first(angles: Iterable[float], present: float) -> list[float]:
 
 
 def _unit(value: float) -> float:
-    """Return a sine or cosine; rounding may have moved it slightly outside."""
+    """Clamp a sine or cosine to -1..1; rounding may have moved it slightly outside."""
     return min(max(value, -1.0), 1.0)

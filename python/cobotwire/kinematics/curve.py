@@ -8,7 +8,7 @@ from itertools import pairwise
 
 Point = tuple[float, ...]
 Matrix = list[list[float]]
-# The largest value between two points is found among that many samples.
+# The largest value between two points is found among this many samples.
 SAMPLES = 4
 
 

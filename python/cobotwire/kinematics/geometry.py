@@ -41,7 +41,7 @@ class Geometry:
 
     @cached_property
     def coupled(self) -> bool:
-        """Whether a link is turned otherwise than by the joint of the same number."""
+        """Whether any link is turned by anything but the joint of its own number."""
         return any(link.turned_by is not None for link in self.links)
 
     @cached_property

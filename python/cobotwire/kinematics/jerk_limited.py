@@ -22,7 +22,7 @@ from cobotwire.protocol.lazy import import_aside
 
 # A derivative that is smaller than this counts as zero.
 STRAIGHT = 1e-9
-# A joint that is this far outside the range from where it is to its target has passed one of both.
+# A joint that leaves the range from its position to its target by more than this has passed an end.
 PASSED_DEGREES = 1e-8
 # How often bends are slowed down further, and what counts as slow enough.
 ROUNDS, ENOUGH = 30, 1.02
@@ -39,7 +39,7 @@ class Bounds(NamedTuple):
 
 
 def load_ruckig() -> Any:
-    """Return the library.
+    """Return the module ``ruckig``.
 
     Raises:
         UsageError: it is not installed.

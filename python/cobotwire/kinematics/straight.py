@@ -38,7 +38,7 @@ def angles_along(
     """Return the angles for poses of the flange that are close to each other.
 
     The list ends before the first pose to which the joints cannot follow. ``effort`` bounds the
-    search for all of them; None: each has its own.
+    search for all poses together; None: the search for each pose has its own bound.
     """
     points: list[Angles] = []
     for flange in flanges:

@@ -1,6 +1,7 @@
 """Read the geometry of an arm from a URDF, which a stranger may have written.
 
-Only the joints between the base and the flange are read: no limits, shapes or files that it names.
+Only the joints between the base and the flange are read. Limits, shapes and files that it names are
+ignored.
 """
 
 from __future__ import annotations
@@ -29,7 +30,8 @@ def with_urdf(table: Table, path: str | None, tip: str | None = None) -> Table:
     """Return the table with the geometry of a URDF, marked as unverified; None: the same table.
 
     Raises:
-        UsageError: the file cannot be read, or as :func:`read_urdf`, or ``tip`` has no file.
+        UsageError: the file cannot be read, :func:`read_urdf` rejects it, or ``path`` is missing
+            while ``tip`` is given.
     """
     if path is None:
         if tip is not None:
@@ -100,7 +102,7 @@ def _chain(robot: Element, tip: str | None) -> list[Element]:
     chain: list[Element] = []
     while tip in before:
         if len(chain) == MOST_JOINTS:
-            raise _wrong(f"more than {MOST_JOINTS} joints lead to the flange, or they are a ring")
+            raise _wrong(f"more than {MOST_JOINTS} joints lead to the flange, or they form a ring")
         chain.append(before[tip])
         tip = _link(before[tip], "parent")
     return chain[::-1]

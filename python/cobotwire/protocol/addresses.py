@@ -75,7 +75,7 @@ def find_address(table: Table, given: int | str | None) -> Address | None:
 
 
 def named_address(table: Table, given: int | str) -> Address:
-    """Return an address by its byte or its name; None is no address.
+    """Return an address by its byte or its name.
 
     Raises:
         UsageError: the edition has no such address.

@@ -111,7 +111,7 @@ def _wrong_types(value: Any, path: str) -> Iterator[str]:
     elif isinstance(value, dict):
         for key, each in value.items():
             here = f"{path}.{key}"
-            # In these two, keys are the names of states, fields and verbs.
+            # In these two, the keys are names of states and fields, or the verb of an effect.
             named = ".state." in here or ".effect." in here
             kind = object if named else KINDS.get(key, object)
             if not isinstance(each, kind) or (kind is int and isinstance(each, bool)):

@@ -80,7 +80,7 @@ class Sets(NamedTuple):
 
 
 class Moves(NamedTuple):
-    """A command moves a part.
+    """A command moves the joints, one joint, the end of the arm or the gripper.
 
     Attributes:
         part: what moves.
@@ -240,7 +240,8 @@ def states_of(table: Table) -> Mapping[str, State]:
     }
 
 
-# The record of each verb, whose first field is the verb's value.
+# The record for the verb of an effect: the key that says what the command does. The value of the
+# key becomes the first field of the record.
 _RECORDS: dict[str, Any] = {
     "reports": Reports,
     "stores": Stores,

@@ -76,7 +76,7 @@ def limited(table: Table, limits: Limits) -> Table:
 def joint_limits(table: Table) -> list[Range]:
     """Return the limits of each joint: the ranges of targets, or else those that are stated.
 
-    A range of every number of the wire does not count. Empty: the edition states no limits.
+    A range that allows every raw value of the wire is no limit. Empty: the edition states none.
     """
     return _ranges(table) or list(table.robot.joint_limits)
 

@@ -121,9 +121,9 @@ def _check(record: Record) -> Check:
 def load_sources(package: str) -> dict[str, Record]:
     """Return where each command comes from: ``place`` in the spec, ``lines`` and ``errata``.
 
-    The place is ``file:line``, also of each change by a delta; lines and errata are those of the
-    maker's document. The result is empty if a hand-written package does not state it. The table of
-    the package was loaded before, so its file is as it was written.
+    The place is ``file:line``; each change by a delta edition adds its own. Lines and errata are
+    those of the maker's document. The result is empty if a hand-written package does not state it.
+    The table of the package was loaded before, so the file has the right checksum.
 
     Raises:
         UsageError: the file of the errata is damaged.

@@ -28,7 +28,8 @@ class Number(NamedTuple):
 
     If ``bits`` is not 0, the number is that many bits of the bytes, ``shift`` bits above the lowest
     one; ``more`` means that the next number is in the same bytes. ``kind``, ``choices`` and
-    ``labels`` are those of a number that differs from its neighbours in the field.
+    ``labels`` are set only if they differ from those of the field's other numbers; otherwise the
+    field has them.
     """
 
     name: str
@@ -67,7 +68,7 @@ class Number(NamedTuple):
 
     @property
     def units(self) -> str:
-        """The unit as it follows a number: its plural; empty without one."""
+        """The unit as it follows a number, in the plural; empty if the number has no unit."""
         return stored_texts("units.json").get(self.unit, self.unit)
 
     @property

@@ -190,7 +190,7 @@ def _runs(numbers: tuple[int, ...], digits: str) -> str:
 
 
 def ranges(numbers: tuple[int, ...]) -> list[tuple[int, int]]:
-    """Return the first and last of each run of consecutive numbers; short runs stay apart."""
+    """Return the first and last of each run of consecutive numbers; up to three stay single."""
     found: list[tuple[int, int]] = []
     for number in numbers:
         if found and number == found[-1][1] + 1:

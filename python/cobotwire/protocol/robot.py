@@ -88,7 +88,7 @@ class Encoders(NamedTuple):
         return self.sign(joint) * (reading - self.zero) * self.degrees
 
     def inside(self, joint: int, lowest: float, highest: float) -> tuple[float, float]:
-        """Return the lowest and highest angle on a tick within limits; low > high: none."""
+        """Return the lowest and highest angle on a tick within limits; low > high if none is."""
         ends = self.angle(joint, 0), self.angle(joint, self.highest)
         lowest, highest = max(lowest, min(ends)), min(highest, max(ends))
         step = self.degrees

@@ -64,13 +64,13 @@ class TypeRecords:
         return field
 
     def numbers_of(self, reference: str | Record, count: int | None = None) -> tuple[Number, ...]:
-        """Return a type's numbers in the order of the wire: of ``count`` elements, or the least."""
+        """Return a type's numbers in wire order, for ``count`` elements or the fewest allowed."""
         type = self.record(reference)
         least: int = type.get("least", 1)
         return self._element(reference, type) * (least if count is None else count)
 
     def _element(self, reference: str | Record, type: Record) -> tuple[Number, ...]:
-        """Return the numbers of one element; of a type other than a list, all of them."""
+        """Return the numbers of one element of a list, or all numbers of another type."""
         if isinstance(reference, str) and reference in self._numbers:
             return self._numbers[reference]
         kind = type["kind"]
@@ -137,6 +137,6 @@ def choices_of(type: Record) -> tuple[int, ...]:
 
 
 def _bits(record: Record) -> Number:
-    """Return a number that is some bits of a word."""
+    """Return a number that occupies some bits of its bytes."""
     lists = {name: tuple(record[name]) for name in ("choices", "labels")}
     return Number(**{**record, **lists})

@@ -121,7 +121,7 @@ class _CommandAcks:
         expected: those whose acknowledgement may still come, if each acknowledgement belongs to the
             oldest request.
         uncertain: those that a caller waits for and whose arrival is not certain.
-        copied: the request that the received frame is a copy of.
+        copied: the expected acknowledgement to a request of which a copy was received.
         began_at: since when acknowledgements have been expected without a break.
     """
 
@@ -288,7 +288,7 @@ class Acks:
             pending.succeed({})
 
     def wake(self, now: float, echoes: bool) -> None:
-        """End the waits whose time is over: a copy counts, unless the line ``echoes``."""
+        """End the waits whose time is over: a copy acknowledges, unless the line ``echoes``."""
         for pending in self.waiting:
             if pending.done:
                 continue

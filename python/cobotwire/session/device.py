@@ -1,4 +1,4 @@
-"""The device side of the exchange: what a simulated arm, or a referee, receives and replies."""
+"""The device side of the exchange: what a simulated arm receives and replies."""
 
 from __future__ import annotations
 

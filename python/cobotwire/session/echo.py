@@ -1,4 +1,4 @@
-"""Whether the line echoes: a loop, some adapters and a transponder send our own bytes back.
+"""Find out whether the line echoes: a loopback, some adapters and a transponder send bytes back.
 
 A few requests are legal replies too: ``FE FE 03 50 01 FA`` queries whether servo 1 is powered, and
 older firmware replies "yes" with the same bytes. So the first copy of a request is only a

@@ -93,7 +93,7 @@ class Exchange:
     # What callers want.
 
     def enqueue(self, pending: PendingRequest) -> None:
-        """Queue a request whose caller already holds it, and gives it up in any case."""
+        """Queue a request. Its caller already holds it, so that an interrupt cannot lose it."""
         self._queue.append(pending)
 
     def send_one_way(
@@ -140,8 +140,8 @@ class Exchange:
         """End every request: the transport is gone.
 
         Returns:
-            The events of the bytes that waited for more. Bytes that are received after the
-            transport is opened again do not complete them.
+            The events of the bytes that waited for the rest of a frame. Bytes that are received
+            after the transport is opened again do not complete them.
         """
         events = self._sort(self._framer.flush(), now, self._framer.fed)
         self.alignment.lose()
@@ -202,7 +202,7 @@ class Exchange:
         return self.end_overdue(now)
 
     def end_overdue(self, now: float) -> list[SessionEvent]:
-        """End the requests of callers that wait no longer; return the events of a sent one."""
+        """End requests whose caller's deadline has passed; return the events of a sent one."""
         if self._acks.waiting:
             self._acks.wake(now, self._echo.proven)
         for pending in self._queue:
@@ -257,7 +257,7 @@ class Exchange:
         return self._last
 
     def written(self, pending: PendingRequest, now: float) -> None:
-        """Note that writing a request ended only now: its reply may be late from now on."""
+        """Note that a request was written whole only now: the time for its reply runs from now."""
         if pending.done:
             self._outstanding.expect(pending.request, now + pending.policy.grace)
         else:

@@ -231,8 +231,8 @@ class _Wait:
     def _predict(self, position: Any, near: bool) -> Generator[Step, Outcome, None]:
         """Find out when the arm may be there, or else whether it stands still.
 
-        ``position`` is None if the arm did not reply; if the query of the goal does not report it,
-        another query does. ``near`` tells whether the arm could be there.
+        ``position`` is None if the arm did not reply. If the goal's query does not report the
+        position, another query is sent. ``near`` says whether the arm could be at the target.
         """
         if self._where is not None and self._goal.decides:
             position = yield from self._query(self._where.request_type())

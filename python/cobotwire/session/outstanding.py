@@ -1,7 +1,7 @@
 """Outstanding replies: those to requests that were given up, or were sent more than once.
 
 A late reply looks like the reply to the next request of the same command. So that request is held
-until the late reply is too late to come at all. It is not sent earlier, even if a late reply has
+until no late reply can come any more. It is not sent earlier, even if a late reply has
 come: some lines double replies, so the late reply may be a copy of the reply to another attempt.
 
 What an ended session leaves outstanding on its port is persisted, for the next session there.
@@ -97,7 +97,7 @@ class PersistedState(NamedTuple):
 
     @property
     def empty(self) -> bool:
-        """Whether the line is aligned and silent."""
+        """Whether no reply is outstanding and no request was cut."""
         return not self.late and not self.parts
 
 

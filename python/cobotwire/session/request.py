@@ -40,7 +40,7 @@ class EncodedRequest(NamedTuple):
     def can_have_reply(self, frame: Frame) -> bool:
         """Return whether a frame can be a reply of this command, whatever its values.
 
-        The command id tells; in a format without ids in replies, the size does.
+        The command id decides; in a format without ids in replies, the size does.
         """
         if self.reply_has_id:
             return frame.command == self.command.id

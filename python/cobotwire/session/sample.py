@@ -13,7 +13,7 @@ class Reading(NamedTuple, Generic[Result]):
     """The result of one request, and when it was read.
 
     Times are seconds of ``time.monotonic()``, unless the transport has a clock of its own. The arm
-    measured the value between the two.
+    measured the value between ``requested_at`` and ``replied_at``.
     """
 
     value: Result

@@ -3,8 +3,8 @@
 A page of another site can make the browser send requests here, and a name that resolves to
 127.0.0.1 makes them look like our own (DNS rebinding). So each request must name this server as its
 host, come from our page if it has an origin, and carry the token unless it is for a file of the
-page. The page keeps the token where only its own origin, port included, can read it. A cookie would
-go to every server on this machine.
+page. The page keeps the token where only its own origin, port included, can read it, and not in a
+cookie, which the browser would send to every server on this machine.
 """
 
 from __future__ import annotations

@@ -138,7 +138,7 @@ class ArmLine:
             result = getattr(self._arm, command.name)(**arguments)
         finally:
             if not query and self.stops != stops:
-                # The stop may have overtaken it.
+                # The stop may have been sent before this command.
                 self._send_stop()
         if checks:
             check_accepted(self._arm, command.name, self.url)

@@ -48,7 +48,7 @@ class LiveEntries:
         self._waiting = False
 
     def take(self, traffic: Traffic) -> list[Entry]:
-        """Return the entries that are certain after one item of traffic."""
+        """Return the entries that one item of traffic completes."""
         if traffic.event is None:
             self._diagnoser.sent(traffic.data)
             return [Entry(traffic.time - self._start, "sent", traffic.data)]

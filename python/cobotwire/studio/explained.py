@@ -79,7 +79,7 @@ def _part(part: Part) -> dict[str, Any]:
 
 
 def _finding(finding: Finding) -> Explanation:
-    # A fact that is false or unknown adds no words.
+    # Facts that are false or unknown are left out.
     facts = {
         name: text
         for name, value in finding.facts.items()

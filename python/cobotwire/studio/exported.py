@@ -29,7 +29,7 @@ class Selection(NamedTuple):
         begin: the first time, in seconds since the start.
         end: the first time that is not written.
         direction: ``sent`` or ``received``; empty: both.
-        command: the only command; empty: all frames, and noise.
+        command: the command that frames must have; empty: all frames, and noise.
     """
 
     format: FileFormat

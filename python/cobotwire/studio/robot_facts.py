@@ -1,4 +1,4 @@
-"""What a page needs to know about a robot before anything comes: joints, limits, coordinates."""
+"""What a page needs to know about a robot before any traffic: joints, limits, coordinates."""
 
 from __future__ import annotations
 

@@ -48,14 +48,15 @@ class Options(NamedTuple):
         source: a port, a URL, the file of a recording, ``follow:FILE`` for one that grows; None: a
             simulated arm.
         edition: the name of the edition.
-        baudrate, record, address: as for other verbs.
+        baudrate, record, address: as for the other subcommands.
         rate: how often a second the arm is polled; 0: never.
         host, port: where the server listens; port 0: any that is free.
         allow_motion: whether pages may send anything but queries.
         open_browser: whether to open the page.
         limits: the limits that the arm's client enforces.
-        silence: seconds after which a motion that a page holds is stopped if the page is silent.
-        geometry, tip: a URDF, of the arm to draw and simulate, and the link of its flange.
+        silence: seconds without a message from the page after which a motion that lasts while a
+            button is held is stopped.
+        geometry, tip: the URDF of the arm to draw and simulate, and the link of its flange.
     """
 
     source: str | None
@@ -149,7 +150,7 @@ def staged(options: Options) -> Iterator[Stage]:
         line = stack.enter_context(ArmLine(edition, port, options.rate))
         if options.allow_motion:
             stack.callback(_stop_at_end, line)
-        # A simulated arm hurts nobody.
+        # Motions of a simulated arm are harmless, so they need no option.
         control = Control(options.allow_motion or simulated is not None)
         stage = Stage(
             edition,

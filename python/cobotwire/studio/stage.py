@@ -57,7 +57,7 @@ class Stage:
         self.explainer = Explainer(edition, codecs.load(self.table))
         self.preparer = Preparer(self.table, address, limits)
         self._limits, self.silence = Limits() if limits is None else limits, silence
-        # Frames of other programs are described by the table of the edition.
+        # Only what pages send is limited: the frames of other programs need the edition's table.
         self.offered = limited(self.table, self._limits)
         self.simulated = simulated
         self._scenarios = scenarios(self.table) if simulated is not None else []

@@ -74,7 +74,7 @@ class PolledTransport:
         return False
 
     def is_free(self) -> bool:
-        """Return whether everything that was written was taken, and more may be."""
+        """Return whether everything that was written was taken, and there is room for more."""
         return not self._unwritten and has_room(self._transport)
 
     def end_writing(self) -> None:
@@ -243,6 +243,6 @@ class ThreadedTransport:
         done(error)
 
     def _in_loop(self, call: Callable[..., None], *arguments: object) -> None:
-        # In a loop that was closed meanwhile nothing waits.
+        # The loop may be closed by now. Then nothing waits for the call.
         with suppress(RuntimeError):
             self._loop.call_soon_threadsafe(call, *arguments)

@@ -148,7 +148,8 @@ class DescriptorTransport(ABC):
         """Close it; a read or write in another thread ends at once."""
         self._closed = True
         self._waiter.wake()
-        # Closed only when no thread waits any longer: another file may get its number immediately.
+        # The descriptor is closed only when no thread waits for it any longer, since another file
+        # may get its number immediately.
         with self._reading, self._writing:
             self._waiter.close()
             self._descriptor = -1

@@ -17,9 +17,9 @@ Tap = Callable[[Literal["sent", "received"], bytes, float], None]
 class Tapped:
     """A :class:`~cobotwire.transport.Transport` around another one.
 
-    The tap gets each chunk at its own time, which no traffic listener sees: half a frame when it
-    arrives, and the written bytes of a write that fails. It runs in the thread that reads or
-    writes, and must not raise.
+    The tap gets each chunk when it passes. It also gets what a traffic listener never sees: half a
+    frame when it arrives, and the written bytes of a write that fails. It runs in the thread that
+    reads or writes, and must not raise.
     """
 
     def __init__(self, transport: Transport, tap: Tap) -> None:

@@ -58,7 +58,7 @@ class Waiter:
 
     def __init__(self) -> None:
         self._woken = False
-        # At most one. A list, since adding to it is atomic: two threads may begin to wait at once.
+        # One alarm, or two if two threads began to wait at once: adding to a list is atomic.
         self._alarms: list[Alarm] = []
 
     def wait(self, descriptor: int, timeout: float, *, writing: bool = False) -> bool:

@@ -1,4 +1,4 @@
-// Send commands: a form for each, the frame before it goes, and the result.
+// Send commands: a form for each, the frame before it is sent, and the result.
 
 import { byId, el } from "./dom.js";
 import { explanation } from "./details.js";

@@ -80,8 +80,8 @@ class SerialTransport(DescriptorTransport):
             self._port = port
             self.low_latency = request_low_latency(port)
             descriptor: int = port.fileno()
-            # The lock of pyserial keeps out only programs that check it. This keeps out all. A
-            # pty that its server holds open would stay locked if this process died.
+            # The lock of pyserial keeps out only programs that check it. This one keeps out all,
+            # but a pty that its server holds open would stay locked if this process died.
             if not os.path.realpath(device).startswith(PSEUDO_TERMINALS):
                 keep_others_out(descriptor)
             return descriptor

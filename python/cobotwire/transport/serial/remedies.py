@@ -109,7 +109,7 @@ def explain(computer: Computer, device: str, number: int | None, reason: str, by
 def missing(computer: Computer, device: str = "") -> str:
     """Return the advice for a port that does not exist.
 
-    Without a name, for a computer without ports.
+    Without a ``device``, return the advice for a computer without ports.
     """
     if _HOST_AND_PORT.fullmatch(device):
         return f"did you mean socket://{device}?"
