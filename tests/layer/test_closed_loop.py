@@ -163,7 +163,8 @@ def test_name_of_the_port_says_which_robot_it_is() -> None:
         assert isinstance(alone.arm, mercury_a1.MercuryA1)
         for call in (alone.get_base_coords, partial(alone.is_in_position, [0] * 6, 2)):
             with pytest.raises(
-                UsageError, match="needs an arm on a body: its port is /dev/left_arm"
+                UsageError,
+                match="needs an arm that is mounted on a body: its port is /dev/left_arm",
             ):
                 call()
         alone.close()

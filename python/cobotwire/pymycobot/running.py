@@ -157,7 +157,7 @@ def _hide_ours(frames: TracebackType | None) -> None:
 
 
 def _leave(error: BaseException | None) -> None:
-    """Close every arm of the program; stop it before if an error ended the program."""
+    """Close every arm of the program; first stop it if an error ended the program."""
     for arm in policy.arms():
         try:
             arm.__exit__(type(error) if error else None, error, None)

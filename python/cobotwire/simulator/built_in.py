@@ -214,7 +214,7 @@ WRITERS: dict[str, Write] = {
 
 
 def after_writing(arm: ArmState, now: float, given: Mapping[str, Any], *, led: bool) -> None:
-    """Let the motion follow what was set: power, torque or limits.
+    """Make the motion obey what was set: power, torque or limits.
 
     Args:
         arm: the arm.

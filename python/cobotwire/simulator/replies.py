@@ -44,7 +44,7 @@ def completed(
     """
     if command.text is not None:
         return {name: result.get(name, "") for name in command.text.fields}
-    # An acknowledgement reports 1: done.
+    # An acknowledgement reports success as 1.
     usual = (1 if command.ack else 0) if usual is None else usual
     if command.accepted:
         usual = command.accepted[0]

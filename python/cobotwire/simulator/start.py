@@ -1,4 +1,4 @@
-"""What an arm is like when it has just been switched on, as its edition states it."""
+"""The coordinates of an arm, and the steps in which it reports, as its edition states them."""
 
 from __future__ import annotations
 

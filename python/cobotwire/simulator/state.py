@@ -186,7 +186,7 @@ class ArmState:
 
     @property
     def tick_degrees(self) -> float:
-        """The degrees of a tick; 0 if the joints rest anywhere."""
+        """The degrees of a tick; 0 if the edition states no encoders: angles are not rounded."""
         return self.encoders.degrees if self.encoders else 0.0
 
     def reported_angles(self, angles: tuple[float, ...]) -> tuple[float, ...]:

@@ -183,9 +183,9 @@ def jog(
 
 
 def is_there(arm: ArmState, coords: Point, angles: Point) -> bool:
-    """Return whether coordinates are those that the arm reports at some angles.
+    """Return whether coordinates are those that the arm reports at ``angles``.
 
-    Then these angles are the nearest solution. The coordinates are rounded, so calculating could
+    Then ``angles`` are the nearest solution. The coordinates are rounded, so calculating could
     find others, far away where the elbow or the wrist is straight, or beyond a limit.
     """
     reported = arm.reported_coords(arm.on_ticks(angles))

@@ -19,7 +19,7 @@ ANY_FREE_PORT = 0
 HIGHEST_PORT = 65535
 # Further clients are disconnected: a runaway program must not use up all descriptors.
 MOST_CLIENTS = 64
-# A client that has been silent for this long is disconnected instead.
+# A client that has been silent for this long is disconnected to make room for a new one.
 IDLE_SECONDS = 2.0
 # While the system has no descriptor left, a client is accepted at most this often.
 RETRY_SECONDS = 0.2
@@ -60,7 +60,7 @@ class TcpServer(Server):
         self._new_peer = connect
         self.url = url_of(self._listening)
         self.loopback = ip_address(self._listening.getsockname()[0]).is_loopback
-        # Since when no client can be accepted; None: they can.
+        # The time since which no client is accepted; None: clients are accepted.
         self._paused_at: float | None = None
         self._selector.register(self._listening, selectors.EVENT_READ)
 

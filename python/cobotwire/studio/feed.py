@@ -1,8 +1,8 @@
 """The WebSocket of a page: entries go out in batches, a few kinds of messages come in.
 
 A message of a page is a JSON object; its key ``wish`` names what the page requests: ``stop``;
-``hold``, ``keep`` and ``release`` for a motion that lasts while a button is held; ``seek``, ``play``
-and ``pause`` for a recording.
+``hold``, ``keep`` and ``release`` for a motion that lasts while a button is held; ``seek``,
+``play`` and ``pause`` for a recording.
 """
 
 from __future__ import annotations

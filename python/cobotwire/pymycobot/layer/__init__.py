@@ -1,1 +1,1 @@
-"""What all classes of the layer share: opening, requests, results, helpers."""
+"""The layer of classes with the maker's names over our clients, and what they share."""

@@ -73,7 +73,7 @@ class Limbs(CompatibleClient):
     def sync_send_angles(
         self, id: int, degrees: Sequence[float], speed: int, timeout: float = 15
     ) -> Self:
-        """Move all joints of an arm to angles, and wait until they are there: ``move_angles``.
+        """Move all joints of an arm to angles, and wait for them, as ``move_angles`` does.
 
         Raises:
             MotionTimeout: the arm is not there in time, and is sent ``stop``; with
@@ -85,7 +85,7 @@ class Limbs(CompatibleClient):
     def sync_send_coords(
         self, id: int, coords: Sequence[float], speed: int, mode: int = 0, timeout: float = 15
     ) -> Self:
-        """Move the end of an arm to coordinates, and wait until it is there: ``move_coords``.
+        """Move the end of an arm to coordinates, and wait for it, as ``move_coords`` does.
 
         Raises:
             MotionTimeout: as ``sync_send_angles``.

@@ -29,7 +29,7 @@ class Method:
         ranges: parameters, each with its least and greatest number.
         result: the function of ``layer/results.py`` that gives the result.
         gives: how ``migrate`` converts our result to the library's.
-        keywords: our arguments that have no position.
+        keywords: our arguments that are passed only by keyword.
     """
 
     address = ""

@@ -40,9 +40,9 @@ VERSION_REGISTER, PINCH_REGISTER = 1, 52
 class ClosedLoop(CompatibleClient):
     """A robot that accepts a motion at once, and reports its end.
 
-    A motion waits for its end and returns the status, which is 0. If the motion fails, the call
-    raises RequestRefused; with ``errors="return"`` it returns the status. With ``_async=True`` it
-    returns 1 at once.
+    A call that starts a motion waits for its end and returns its status, which is 0. If the motion
+    fails, the call raises RequestRefused; with ``errors="return"`` it returns the status. With
+    ``_async=True`` it returns 1 at once.
     """
 
     QUIET: ClassVar[int | None] = DONE
@@ -168,7 +168,7 @@ class Reporting(ClosedLoop):
 
     @naming(address="gripper_address", gripper="gripper_id")
     def get_pro_gripper(self, gripper_address: int, gripper_id: int = 14) -> Any:
-        """Read a register of a tool; the version of its firmware (1) in tenths."""
+        """Read a register of a tool; register 1, the firmware version, is divided by 10."""
         gives = tenths if gripper_address == VERSION_REGISTER else plain
         return self._query(gives, self.arm.get_pro_gripper, gripper_address, gripper_id)
 
@@ -184,7 +184,7 @@ class Reporting(ClosedLoop):
         return self._move(self.arm.drag_teach_execute)
 
     def go_home(self, robot: int = 1, speed: int = HOME_SPEED, _async: bool = False) -> Any:
-        """Move the arm to its pose at rest; if ``robot`` is not 1, head and waist before."""
+        """Move the arm to its rest pose; if ``robot`` is not 1, first move head and waist to 0."""
         if robot != 1:
             for joint in (11, 12, 13):
                 self._move(self.arm.send_angle, joint, 0, speed)
@@ -194,7 +194,7 @@ class Reporting(ClosedLoop):
 
     @naming(angles="degrees")
     def sync_send_angles(self, degrees: Sequence[float], speed: int, timeout: float = 15) -> int:
-        """Move all joints to angles, and wait until they are there: ``move_angles``.
+        """Move all joints to angles, and wait until they are there, as ``move_angles`` does.
 
         Raises:
             MotionTimeout: the arm is not there in time, and is sent ``stop``; with
@@ -216,8 +216,8 @@ class Reporting(ClosedLoop):
         """Let the fingers of a hand pinch.
 
         Raises:
-            UsageError: an argument is not allowed. No source describes the message with
-                ``idle_flag``.
+            UsageError: an argument is not allowed, such as an ``idle_flag``: no document of the
+                maker describes the message with it.
         """
         if idle_flag is not None:
             message = "set_hand_gripper_pinch_action_speed_consort() takes no idle_flag: no source"

@@ -27,7 +27,7 @@ class Waiting(CompatibleClient):
 
     @naming(angles="degrees")
     def sync_send_angles(self, degrees: Sequence[float], speed: int, timeout: float = 15) -> int:
-        """Move all joints to angles, and wait until they are there: ``move_angles``.
+        """Move all joints to angles, and wait until they are there, as ``move_angles`` does.
 
         Raises:
             MotionTimeout: the arm is not there in time, and is sent ``stop``; with
@@ -52,7 +52,7 @@ class WaitingWithMode(Waiting):
     def sync_send_coords(
         self, coords: Sequence[float], speed: int, mode: int = 0, timeout: float = 15
     ) -> int:
-        """Move the end of the arm to coordinates, and wait until it is there: ``move_coords``.
+        """Move the end of the arm to coordinates, and wait for it, as ``move_coords`` does.
 
         Raises:
             MotionTimeout: as ``sync_send_angles``.
@@ -71,7 +71,7 @@ class WaitingLonger(WaitingForResult):
 
     @naming(angles="degrees")
     def sync_send_angles(self, degrees: Sequence[float], speed: int, timeout: float = 30) -> int:
-        """Move all joints to angles, and wait until they are there: ``move_angles``.
+        """Move all joints to angles, and wait until they are there, as ``move_angles`` does.
 
         Raises:
             MotionTimeout: the arm is not there in time, and is sent ``stop``; with
@@ -84,7 +84,7 @@ class WaitingWithoutMode(Waiting):
     """Waits for the end of a motion to coordinates."""
 
     def sync_send_coords(self, coords: Sequence[float], speed: int, timeout: float = 15) -> int:
-        """Move the end of the arm to coordinates, and wait until it is there: ``move_coords``.
+        """Move the end of the arm to coordinates, and wait for it, as ``move_coords`` does.
 
         Raises:
             MotionTimeout: as ``sync_send_angles``.
@@ -99,7 +99,7 @@ class WaitingInChain(Waiting):
     def sync_send_angles(  # type: ignore[override]
         self, degrees: Sequence[float], speed: int, timeout: float = 15
     ) -> Self:
-        """Move all joints to angles, and wait until they are there: ``move_angles``.
+        """Move all joints to angles, and wait until they are there, as ``move_angles`` does.
 
         Raises:
             MotionTimeout: the arm is not there in time, and is sent ``stop``; with
@@ -111,7 +111,7 @@ class WaitingInChain(Waiting):
     def sync_send_coords(
         self, coords: Sequence[float], speed: int, mode: int | None, timeout: float = 15
     ) -> Self:
-        """Move the end of the arm to coordinates, and wait until it is there: ``move_coords``.
+        """Move the end of the arm to coordinates, and wait for it, as ``move_coords`` does.
 
         Raises:
             UsageError: there is a mode, which the edition cannot send.

@@ -19,7 +19,7 @@ BASE_COORDS = 2
 class ByPort(Reporting):
     """An arm of a two-armed robot if its port is one of ``PORTS``; otherwise a single arm.
 
-    Only an arm on a body has coordinates from the waist, and the joints 11 to 13.
+    Only an arm that is mounted on a body has coordinates from the waist, and the joints 11 to 13.
     """
 
     ELSEWHERE: ClassVar[type[Client]]
@@ -41,7 +41,7 @@ class ByPort(Reporting):
             self._waits = True
 
     def _only_here(self, name: str) -> Any:
-        """Return a method that only the client of an arm on a body has.
+        """Return a method that only the client of an arm on a robot's body has.
 
         Raises:
             UsageError: the robot has only one arm.
@@ -49,7 +49,7 @@ class ByPort(Reporting):
         if isinstance(self.arm, self.NATIVE):
             return getattr(self.arm, name)
         ports = " or ".join(self.PORTS)
-        message = f"{name}() needs an arm on a body: its port is {ports}"
+        message = f"{name}() needs an arm that is mounted on a body: its port is {ports}"
         raise UsageError("port", message=message)
 
     @naming(target="data")

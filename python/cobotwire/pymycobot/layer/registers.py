@@ -49,7 +49,7 @@ class Registers(CompatibleClient):
     """Reads and writes registers by their numbers."""
 
     def get_pro_gripper(self, address: int, gripper_id: int = 14) -> Any:
-        """Read a register of a gripper. Register 1, the version of the firmware, is in tenths.
+        """Read a register of a gripper. Register 1 holds the firmware version in tenths.
 
         Raises:
             UsageError: an argument is not allowed, or each joint of the hand has the register; the

@@ -53,7 +53,7 @@ def bit_numbers(value: Any) -> Any:
 
 
 def error_classes(value: Any) -> Any:
-    """Return the set bits of the class of each of seven bytes; six bytes as three signed words."""
+    """Return the set bits of each byte's class for seven bytes; for six, three signed words."""
     if len(value) == 7:
         return bit_numbers([_error_class(byte) for byte in value])
     data = bytes(value)

@@ -22,7 +22,7 @@ _LAYER = "cobotwire.pymycobot.layer."
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A method of the library beside ours.
+    """A method of the library, and the method of ours that replaces it.
 
     Attributes:
         calls: our method.
@@ -31,8 +31,8 @@ class Call:
         result: how the library gives the result.
         gives: how to convert our result to the library's: ``same``, ``int``, ``list``,
             ``ints``; ``nothing`` if we have no result; ``parts`` if a person must convert it.
-        keywords: our arguments that have no position.
-        address: the library's parameter that selects the device; empty without one.
+        keywords: our arguments that are passed only by keyword.
+        address: the library's parameter that selects the device; empty if there is none.
         by_hand: whether a helper of the layer has the method, not the generated class.
     """
 
@@ -83,7 +83,7 @@ class LibraryClass:
         return found if found.by_hand or not self.is_by_hand(method) else None
 
     def called(self, name: str) -> Call | None:
-        """Return the library's name for a method of our client; None if it has no such method."""
+        """Return the library's method that a method of our client replaces; None if none is."""
         return next((each for each in self.methods.values() if each.calls == name), None)
 
     def has(self, method: str) -> bool:

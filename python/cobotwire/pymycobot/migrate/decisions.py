@@ -53,7 +53,7 @@ RESULTS = {
     **dict.fromkeys(["bytes_listed", "numbers"], _BYTES),
     "tenths": "our result is ten times the library's",
     "hex_text": "our result is a number, not a text of hex digits",
-    "signed": "our result has no sign",
+    "signed": "our result has unsigned numbers",
     "solved": "if there is no solution, the library returns a text, and ours a tuple of angles",
     "one_speed": "if this is a list with a speed for each servo, pass it as our argument speeds",
     "listed": "our result is a number where the library's is a list of one",
@@ -69,18 +69,21 @@ NEVER_FAILED = (
     "failure; catch the error"
 )
 NO_RESULT = (
-    "{0} returns nothing here, and the library's returns a result; do not use it: a call that "
+    "{0} returns nothing here, but a result in the library; do not use the result: a call that "
     "fails raises an error"
 )
-PARTS = "our result is a named tuple of parts, not lists of numbers; name the part: result.{0}"
+PARTS = "our result is a named tuple of parts, not lists of numbers; use the parts by their names"
 HIDDEN_NAME = "this needs Python's {0}, but the program uses that name for something else"
-NOT_ACKNOWLEDGED = ", with ack_within=1.5 also one that the arm does not acknowledge"
+NOT_ACKNOWLEDGED = "; with ack_within=1.5, a call that the arm does not acknowledge raises one too"
 ATTRIBUTE = "{0} is not called here, and only calls are rewritten; write `lambda: {0}()`"
 ESCAPED = (
     "the arm is passed to code that is not read here, so its calls there are not rewritten; "
     "rewrite them there, or annotate the parameter with {0}"
 )
-INHERITS = "{0} inherits from {1}; calls of its own methods are not rewritten: hold an arm instead"
+INHERITS = (
+    "{0} inherits from {1}; calls of its own methods are not rewritten: store an arm in an "
+    "attribute instead of inheriting"
+)
 MIXED = (
     "{0} is not always an arm of one class, so the call is left as it is; give each arm a name of "
     "its own"
@@ -89,7 +92,9 @@ NOT_STATEMENT = "this import shares its line; write it on a line of its own, and
 BY_TEXT = "{0} runs code that is not read here; if that uses the library, rewrite it by hand"
 UTILITY = "cobotwire.pymycobot.utils has no {0}"
 HOME = "go_home waits, and its pose and speed depend on its arguments; use move_angles"
-OTHER_ROBOT = "the class is {} here; if the port is that of an arm on a body, write {} ({})"
+OTHER_ROBOT = (
+    "the class is {} here; if the port is that of an arm that is mounted on a body, write {} ({})"
+)
 SEVERAL = "{} stands for several classes; write the port and the speed as our classes take them"
 TIMEOUT = "timeout was the time of one read of the port; ours limits the whole wait for a reply"
 UNKNOWN = (
@@ -120,7 +125,7 @@ def why_left(kind: LibraryClass, method: str) -> str:
         why = kind.absent.get(method)
         return f"{kind.native} has no counterpart of {method}" + (f": {why}" if why else "")
     if kind.on_ports and method in kind.methods:
-        return f"only {kind.on_ports[0]} has {method}, the client of an arm on a body"
+        return f"only {kind.on_ports[0]} has {method}; it is for an arm that is mounted on a body"
     what = BY_HAND.get(method, f"see cobotwire.pymycobot.{kind.name}.{method}")
     return f"no single call of ours does what the library's {method} does: {what}"
 

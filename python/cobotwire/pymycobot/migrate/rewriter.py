@@ -279,6 +279,6 @@ def _of_device(made: cst.Call, kind: LibraryClass, address: cst.BaseExpression) 
 
 
 def _renamed(made: cst.Call, method: str, arm_of: cst.Call | None = None) -> cst.Call:
-    """Return a call of a method of ours, of the arm that a call has."""
+    """Return a call with the name of our method; ``arm_of`` has the arm, by default the call."""
     func = cst.ensure_type((arm_of or made).func, cst.Attribute)
     return made.with_changes(func=func.with_changes(attr=cst.Name(method)))

@@ -35,6 +35,7 @@ def drag_get_record_data(
     """Reply with the next point: each joint's encoder and speed in turn; zeros after the last."""
     if arm.played >= len(arm.points):
         arm.played = 0
+        # Without a reply of the behaviour, the arm replies with zeros.
         return None
     point = arm.points[arm.played]
     arm.played += 1

@@ -95,7 +95,7 @@ def enlarged(reply: Reply, at: int, data: bytes) -> Reply:
 
 
 def spread(reply: Reply, cuts: Sequence[int], pause: float) -> Reply:
-    """Return a reply with additional pauses before these bytes."""
+    """Return a reply with additional pauses before the bytes at the offsets ``cuts``."""
     pieces: list[Piece] = []
     start = 0
     for piece in reply:

@@ -100,9 +100,10 @@ class Fault:
     Attributes:
         commands: only these commands, by name or by id; empty: any command.
         only: only this kind of request; see ``ONLY``.
-        nth: only the first, second ... of them, counted from 1; empty: each.
-        every: 2: every second of them; 3: every third.
-        first: with ``every``: the first of them to count from; None: the same as ``every``.
+        nth: only these, by their numbers among the requests that meet ``commands`` and ``only``,
+            counted from 1; empty: each.
+        every: only every n-th of these requests.
+        first: with ``every``: the number of the first one; None: the same as ``every``.
         probability: 0 never, 1 always.
         from_seconds: not before this time, counted from the beginning of the scenario.
         until_seconds: not at this time or later.

@@ -32,7 +32,7 @@ def edits(
     Args:
         fault: how each byte is damaged: it is dropped, corrupted, or something is added before it.
         data: the undamaged stream.
-        places: which bytes.
+        places: the offsets of the bytes to damage.
         table: the edition of the frames in the stream.
         random: the source of the fault's random numbers.
     """

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 
-# After this many halvings, 300 degrees per second are below the resolution of a double.
+# After this many halvings, an interval of 300 degrees per second is below a double's resolution.
 BISECTIONS = 60
 
 
 class Travel:
-    """Covers ``way`` in ``duration`` seconds: changes to a cruising speed, then brakes.
+    """Covers the signed distance ``way`` in ``duration`` seconds: changes to a cruise, then brakes.
 
     It begins at ``speed``, and speeds up and slows down at ``acceleration``. :func:`quickest` and
     :func:`lasting` find the cruising speed.
@@ -60,7 +60,7 @@ def quickest(speed: float, way: float, fastest: float, acceleration: float) -> T
 
 
 def lasting(speed: float, way: float, acceleration: float, duration: float) -> Travel:
-    """Return the travel over ``way`` that takes ``duration``; it is not below the quickest."""
+    """Return the travel over ``way`` that takes ``duration``, at least that of the quickest."""
     # The way grows with the cruising speed, so bisection finds the speed.
     slowest = (speed - acceleration * duration) / 2
     fastest = (speed + acceleration * duration) / 2

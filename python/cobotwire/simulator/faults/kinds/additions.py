@@ -30,7 +30,7 @@ class Addition(Damage):
 
     Attributes:
         where: before the reply, after it, or inside, which breaks it.
-        after_bytes: with ``inside``, the number of bytes before them; None: drawn.
+        after_bytes: with ``inside``, the number of bytes before them; None: random.
         times: how many times, without a pause.
     """
 

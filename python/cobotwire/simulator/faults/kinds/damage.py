@@ -15,7 +15,7 @@ class Corrupted(Damage):
     """Bits are flipped.
 
     Attributes:
-        bits: how many bits, each at another place.
+        bits: how many different bits.
         byte: the index of the byte in which all bits are flipped, counted from 0, or from the end
             if negative; None: the bits are in any bytes.
     """
@@ -24,7 +24,7 @@ class Corrupted(Damage):
     byte: int | None = ruled(optional(integer(-4096, 4095)), None)
 
     def spoil(self, data: bytes, context: Context) -> bytes:
-        """Flip the bits; without that byte, change nothing."""
+        """Flip the bits; if there is no such byte, change nothing."""
         places = range(8 * len(data))
         if self.byte is not None:
             places = range(8 * (self.byte % len(data)), 8 * (self.byte % len(data)) + 8)

@@ -27,7 +27,7 @@ class Truncated(Damage):
     """The end is lost.
 
     Attributes:
-        after_bytes: how many bytes are left; None: drawn, so that at least one byte is lost.
+        after_bytes: how many bytes are left; None: a random number, so that at least one is lost.
     """
 
     after_bytes: int | None = ruled(optional(integer(1, 4096)), None)
@@ -46,7 +46,7 @@ class Dropped(Damage):
     """Bytes in the middle are lost.
 
     Attributes:
-        byte: the index of the first lost byte, from 0; None: drawn.
+        byte: the index of the first lost byte, from 0; None: random.
         count: how many.
     """
 

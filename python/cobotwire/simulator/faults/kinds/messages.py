@@ -37,7 +37,7 @@ class UnrequestedEvent(Fault):
 @kind("other-address")
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OtherAddress(Fault):
-    """The same reply comes from another address before the reply.
+    """A copy of the reply, with the address of another device, precedes the reply.
 
     Attributes:
         seconds: the pause between the two.

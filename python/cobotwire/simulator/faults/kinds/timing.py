@@ -17,7 +17,7 @@ class Late(Fault):
 
     Attributes:
         seconds: how late.
-        jitter_seconds: the longest additional delay; it is drawn for each reply.
+        jitter_seconds: the longest additional delay, which is random for each reply.
     """
 
     seconds: float = ruled(SECONDS, 0.1)
@@ -57,7 +57,7 @@ class Split(Fault):
     """There is a pause within the reply.
 
     Attributes:
-        after_bytes: after how many bytes; None: drawn.
+        after_bytes: after how many bytes; None: random.
         seconds: how long the pause is.
     """
 
