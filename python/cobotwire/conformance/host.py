@@ -40,6 +40,6 @@ def clock_mistake(host: Host) -> str:
     if abs(apart) <= READING + SHARE * host.monotonic_seconds:
         return ""
     return (
-        f"The clocks of the host disagree: during the run the wall clock went {apart:+.3f} s "
-        "further than the monotonic clock; it was set, or the host was suspended."
+        f"The clocks of the host disagree: during the run the wall clock moved {apart:+.3f} s "
+        "against the monotonic clock; it was set, or the host was suspended."
     )

@@ -21,7 +21,7 @@ NO_TESTERS = ("reports", "catalogue")
 
 
 def identify(report: Report, edition: str, *, port: str = "") -> None:
-    """Write into a report what it needs to be understood, and repeated, elsewhere.
+    """Write into a report what others need to understand and to repeat the run.
 
     Args:
         report: the report.

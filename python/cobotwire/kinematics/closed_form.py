@@ -44,8 +44,8 @@ def solutions(geometry: Geometry, target: Pose, present: Sequence[float]) -> Ite
     """Yield each solution in degrees, -180..180, without regard to limits.
 
     If the target is out of reach, yield angles that may come close to it. Solutions with shoulder,
-    wrist and elbow as in the ``present`` angles come first. If the wrist is straight, which leaves
-    the sixth joint free, these angles determine it.
+    wrist and elbow as in the ``present`` angles come first. If the wrist is straight, the sixth
+    joint is free, and solutions with its present angle come first.
     """
     links = geometry.links
     spherical = links[2].alpha != 0

@@ -54,9 +54,9 @@ def nearest(
     Args:
         geometry: the arm.
         target: the flange's pose in the frame of the base.
-        present: the angles to stay close to, in degrees. The nearest solution has the smallest
-            largest turn of a joint, so that it takes the least time; of equal ones, the smallest
-            sum of turns. Without a closed form, only solutions that the search finds count.
+        present: the angles to stay close to, in degrees. Solutions are compared by
+            the joint that turns farthest, because that decides how long a motion takes, then by the
+            sum of all turns. Without a closed form, only solutions that the search finds count.
         limits: the lowest and the highest angle of each joint, in degrees.
         largest_turn: for a point of a path, how far a joint should turn at most, in degrees. The
             first solution within it is taken; if there is none, joints may turn further.

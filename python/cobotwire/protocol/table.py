@@ -238,8 +238,8 @@ class Address(NamedTuple):
         name: its name in the edition.
         value: the byte.
         doc: which device has it.
-        replies: to a request, replies come from this address (``own``), from any address
-            (``any``: several devices receive it; ``one``: one of them replies for all), or from
+        replies: where replies to a request come from: this address (``own``), several addresses
+            (``any``: several devices receive it), one of them that replies for all (``one``), or
             none (``none``).
         joints: how many joints the device has; 0: as many as the edition.
     """

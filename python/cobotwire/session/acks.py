@@ -37,7 +37,8 @@ class ExpectedAck:
         offset: where in the received stream it can begin at the earliest.
         doubts: for each similar acknowledgement of another request, the second until which it may
             come; soonest first.
-        certain: whether it has come for sure: others cannot account for all acknowledgements.
+        certain: whether it has certainly come: other requests cannot have caused all received
+            acknowledgements.
     """
 
     __slots__ = ("certain", "doubts", "offset", "request", "sent_at", "until")
@@ -260,9 +261,9 @@ class Acks:
         """Learn whether motions are acknowledged at once.
 
         If only one motion is outstanding and its acknowledgement comes soon, they are. If several
-        are outstanding, an early acknowledgement may belong to an older motion. It does not if
-        acknowledgements have been outstanding without a break for longer than a motion may take:
-        then an older one was lost.
+        are outstanding, an early acknowledgement may belong to an older motion. But if
+        acknowledgements have been outstanding without a break for longer than a motion may take, an
+        older one was lost, and the early one belongs to the newest motion.
         """
         newest = next(ack for ack in reversed(acks.expected) if received.of(ack.request))
         if newest.request.command.safety != "motion" or now - newest.sent_at >= GRACE_SECONDS:

@@ -244,7 +244,7 @@ def _does(requested: Requested, effect: Does) -> None:
     elif effect.what == "resume":
         arm.resume(now)
     elif effect.what == "forget":
-        # The sources define no more, so the present motion continues.
+        # The sources say nothing about the present motion, so it continues.
         arm.angles.forget(now)
     else:
         # The joints that move together stop together.

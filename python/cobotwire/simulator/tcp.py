@@ -21,7 +21,7 @@ HIGHEST_PORT = 65535
 MOST_CLIENTS = 64
 # A client that has been silent for this long is disconnected to make room for a new one.
 IDLE_SECONDS = 2.0
-# While the system has no descriptor left, a client is accepted at most this often.
+# While the system has no descriptor left, the server tries to accept a client at most this often.
 RETRY_SECONDS = 0.2
 # A client is accepted only if this many descriptors are free.
 SPARE_DESCRIPTORS = 4

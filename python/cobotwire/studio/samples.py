@@ -13,7 +13,7 @@ from cobotwire.protocol.table import Command, Field, Table, Variant
 from cobotwire.simulator.start import coordinates
 from cobotwire.studio.entries import Entry
 
-# The reply time of a later reply is not shown.
+# If a reply takes longer, its reply time is not shown.
 LONGEST_REPLY_SECONDS = 5.0
 # An arm within this distance of its target has reached it.
 REACHED_DEGREES, REACHED_MILLIMETRES = 0.5, 1.0

@@ -121,7 +121,7 @@ def scenarios(table: Table) -> list[ScenarioChoice]:
             scenario = find(name, table)
         except CobotwireError:
             continue
-        # A scenario that replays a recording contains an arm of its own.
+        # A scenario that replays a recording would replace the simulated arm.
         if scenario.replay is None:
             found.append(ScenarioChoice(name, scenario.about))
     return found

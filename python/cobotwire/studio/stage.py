@@ -187,7 +187,8 @@ class Stage:
             raise NotPermitted("nothing can be sent to a recording")
         if isinstance(self.session.line, FollowedRecording):
             raise NotPermitted(
-                "this page only shows a recording: stop the program there, or the arm by its switch"
+                "this page only shows a recording: stop the program that moves the arm, "
+                "or use the arm's switch"
             )
         return self.session.line
 

@@ -1,7 +1,7 @@
 """Log without loading ``logging``, which takes a third as long as starting Python.
 
-A program that never imports ``logging`` has not configured it either, so that nothing below a
-warning is shown.
+A program that never imports ``logging`` has not configured it either, so nothing below a warning
+is shown.
 """
 
 from __future__ import annotations

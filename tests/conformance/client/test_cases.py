@@ -84,7 +84,7 @@ FAILING: dict[str, tuple[Sequence[str], Writes, str]] = {
     "frame-whole": (
         (),
         spaced(bytes.fromhex("FEFE062101")),
-        "send_angle breaks off: by LEN 06, 4 more bytes belong to it",
+        "send_angle breaks off: LEN 06 requires 4 more bytes",
     ),
     "stray-bytes": ((), spaced(b"\x01\x02\x03"), "bytes outside any frame: 01 02 03"),
     "interleaved-write": ((), spaced(COLOUR[:5] + ANGLES + COLOUR[5:]), ""),

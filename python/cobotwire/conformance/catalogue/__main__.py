@@ -10,7 +10,7 @@ from cobotwire.conformance.catalogue.pages import pages
 
 
 def main() -> None:
-    """Print an object of texts by file name; exit with 1 if the catalogue needs a new version."""
+    """Print a JSON object, the text of each file by its name; exit with 1 if outdated."""
     if message := outdated():
         sys.exit(message)
     json.dump(pages(), sys.stdout)

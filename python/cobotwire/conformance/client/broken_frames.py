@@ -70,7 +70,7 @@ def described(table: Table, noise: Noise) -> str:
             return (
                 f"{name} is sent in parts with a pause of over {1000 * IDLE_SECONDS:g} ms: {text}"
             )
-        return f"{name} breaks off: by LEN {length:02X}, {missing} more bytes belong to it: {text}"
+        return f"{name} breaks off: LEN {length:02X} requires {missing} more bytes: {text}"
     return f"{name} does not end with {_right_end(frame, data)}: {text}"
 
 

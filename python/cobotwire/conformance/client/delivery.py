@@ -36,7 +36,7 @@ SOON_SECONDS = 0.02
 
 
 def _late(every: int, first: int) -> tuple[Fault, ...]:
-    """Return faults that delay replies at distances of ``every + 1`` and ``every``, alternately.
+    """Return faults that delay a reply after ``every + 1`` and after ``every``, alternately.
 
     If the distance were fixed, and a client sent its queries in a fixed order, the late replies
     would all be to the same query, and would come when the client waits for that query again.
@@ -90,7 +90,7 @@ def possible_faults(table: Table) -> list[str]:
 
 
 def _made(name: str, every: int, first: int) -> tuple[Fault, ...]:
-    """Return the faults of a name."""
+    """Return the faults that a name stands for."""
     made = FAULTS[name](every=every, first=first)
     return (made,) if isinstance(made, Fault) else made
 

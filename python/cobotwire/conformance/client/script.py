@@ -19,10 +19,14 @@ SCALE = TestCase("sent-scale", "Values are sent in the scale of their field.", S
 SIGN = TestCase("sent-sign", "Values are sent with their sign.", SOURCE)
 BYTE_ORDER = TestCase("sent-byte-order", "Numbers are sent in the field's byte order.", SOURCE)
 ORDER = TestCase("sent-order", "Values are sent in the order of the fields.", SOURCE)
-ROUNDED = TestCase("sent-rounded", "Values are sent as the nearest step.", SOURCE)
+ROUNDED = TestCase("sent-rounded", "Values are rounded to the nearest step.", SOURCE)
 VALUE = TestCase("sent-value", "Values are sent as the script states them.", SOURCE)
-ADDRESS = TestCase("sent-address", "Requests are sent to the address of the script.", SOURCE)
-VARIANT = TestCase("sent-variant", "Requests are sent in the variant of the script.", SOURCE)
+ADDRESS = TestCase(
+    "sent-address", "Requests are sent to the address that the script states.", SOURCE
+)
+VARIANT = TestCase(
+    "sent-variant", "Requests are sent in the variant that the script states.", SOURCE
+)
 ONCE = TestCase("sent-once", "A change that is once in the script is sent once.", SOURCE)
 ALL = TestCase("sent-all", "Everything in the script is sent.", SOURCE)
 NOTHING_ELSE = TestCase("sent-nothing-else", "Nothing is sent that is not in the script.", SOURCE)

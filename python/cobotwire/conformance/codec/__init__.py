@@ -1,4 +1,4 @@
-"""Test whether a codec conforms to an edition: a program in any language, on standard input."""
+"""Test whether a codec conforms to an edition; it may be a program in any language."""
 
 from cobotwire.conformance.codec.implementation import Implementation, NoAnswer, Program
 from cobotwire.conformance.codec.options import CodecOptions

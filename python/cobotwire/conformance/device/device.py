@@ -162,7 +162,7 @@ class Device:
         return earlier[-1]
 
     def count(self, response: Response) -> Response:
-        """Count the reply time of a response, and return the response."""
+        """Record the reply time, or check that a silent device is still there; return it."""
         command = response.request.command
         if command.requires_reply and response.valid is not None:
             self.noticed.reply_seconds.setdefault(command.name, []).append(response.valid.seconds)

@@ -48,7 +48,7 @@ class Response:
 
     @property
     def noise(self) -> list[Finding]:
-        """What a healthy arm's line carries besides frames."""
+        """Noise that also occurs with healthy arms."""
         return [finding for finding in self.findings if finding.ordinary]
 
     @property

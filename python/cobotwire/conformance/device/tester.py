@@ -76,8 +76,8 @@ class Tester:
             optional: commands that the device may lack: if it is silent, they are not supported.
             address: the device's address, by number or name; left out: the edition's first one.
             statement: what the maker declares of the device; it selects test cases, and is tested.
-            lacking: what the device itself states that it does not support: by command, the
-                reason. It may grow during the run. A command without a reply is then no failure.
+            lacking: the commands that the device itself reports as unsupported, each with the
+                reason; more may be added during the run. Silence is no failure of these.
 
         Raises:
             UsageError: the edition has no such address, or a request to it has no reply.
@@ -191,7 +191,7 @@ class Tester:
             raise
 
     def missing(self, step: Step) -> str:
-        """Return the permissions that a step needs and the run lacks; empty: none."""
+        """Return the permissions that a step needs and the run lacks; empty if it lacks none."""
         return self.device.permissions.missing(needed(step.group, step.command))
 
     def results(self, step: Step) -> list[Result]:

@@ -76,8 +76,8 @@ class Limbs(CompatibleClient):
         """Move all joints of an arm to angles, and wait for them, as ``move_angles`` does.
 
         Raises:
-            MotionTimeout: the arm is not there in time, and is sent ``stop``; with
-                ``errors="return"`` it is stopped, but nothing is raised.
+            MotionTimeout: the arm does not arrive in time; it is then sent ``stop``. With
+                ``errors="return"`` nothing is raised.
         """
         return self._reached(self.arm.at(id).move_angles, degrees, speed, timeout=timeout)
 

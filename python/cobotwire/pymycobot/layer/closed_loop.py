@@ -197,8 +197,8 @@ class Reporting(ClosedLoop):
         """Move all joints to angles, and wait until they are there, as ``move_angles`` does.
 
         Raises:
-            MotionTimeout: the arm is not there in time, and is sent ``stop``; with
-                ``errors="return"`` it is stopped, and the result is 0, as it is in the library.
+            MotionTimeout: the arm does not arrive in time; it is then sent ``stop``. With
+                ``errors="return"`` the result is then 0, as it is in the library.
             RequestRefused: the motion failed; with ``errors="return"`` the result is 0.
         """
         try:

@@ -30,9 +30,9 @@ class Waiting(CompatibleClient):
         """Move all joints to angles, and wait until they are there, as ``move_angles`` does.
 
         Raises:
-            MotionTimeout: the arm is not there in time, and is sent ``stop``; with
-                ``errors="return"`` it is stopped, and the result is the library's: 1, and 0 in its
-                older classes.
+            MotionTimeout: the arm does not arrive in time; it is then sent ``stop``. With
+                ``errors="return"`` the call returns what the library returns: 1, or 0 in its older
+                classes.
         """
         return self._reached(self.arm.move_angles, degrees, speed, timeout=timeout)
 
@@ -74,8 +74,8 @@ class WaitingLonger(WaitingForResult):
         """Move all joints to angles, and wait until they are there, as ``move_angles`` does.
 
         Raises:
-            MotionTimeout: the arm is not there in time, and is sent ``stop``; with
-                ``errors="return"`` it is stopped, and the result is 0.
+            MotionTimeout: the arm does not arrive in time; it is then sent ``stop``. With
+                ``errors="return"`` the result is then 0.
         """
         return self._reached(self.arm.move_angles, degrees, speed, timeout=timeout)
 
@@ -102,8 +102,8 @@ class WaitingInChain(Waiting):
         """Move all joints to angles, and wait until they are there, as ``move_angles`` does.
 
         Raises:
-            MotionTimeout: the arm is not there in time, and is sent ``stop``; with
-                ``errors="return"`` it is stopped, but nothing is raised.
+            MotionTimeout: the arm does not arrive in time; it is then sent ``stop``. With
+                ``errors="return"`` nothing is raised.
         """
         self._reached(self.arm.move_angles, degrees, speed, timeout=timeout)
         return self
@@ -197,6 +197,6 @@ class Pins:
             UsageError: ``gpio_init`` was not called.
         """
         if not hasattr(self, "gpio"):
-            raise UsageError("pin", pin, "set after gpio_init() was called")
+            raise UsageError("pin", message="call gpio_init() before setting a pin")
         self.gpio.setup(pin, self.gpio.OUT)
         self.gpio.output(pin, v)

@@ -189,7 +189,7 @@ class Rewriter(cst.CSTTransformer):
             self.decide(original, f"{kind.native} needs the port")
             return updated
         opened = socket_arguments if kind.opens == "socket" else serial_arguments
-        # The class's name was replaced if it came from the library; a name of the program's stays.
+        # The class's name was replaced if it came from the library; other names stay.
         return updated.with_changes(args=opened(place, speed))
 
     def sleep(

@@ -47,7 +47,7 @@ def is_waist_in_position(
 
 @LIMBS.behaviour(m.IsRobotInPosition)
 def is_robot_in_position(arm: ArmState, now: float, request: Any) -> None:
-    """Do not reply: no source says which limb does, and each limb is simulated separately."""
+    """Do not reply: no source says which limb replies, and each limb is simulated separately."""
     raise Unanswerable("no source says which limb replies for the whole robot")
 
 

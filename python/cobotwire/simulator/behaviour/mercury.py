@@ -1,7 +1,7 @@
 """What the Mercury and the Pro arms do for commands that the 280 lacks, or that have other fields.
 
-Their frames end with a CRC, and they report the end of each motion. The types are those of the
-Mercury A1; the other editions have messages with the same fields.
+Frames of these arms end with a CRC, and the arms report the end of each motion. The types are those
+of the Mercury A1; the other editions have messages with the same fields.
 """
 
 from __future__ import annotations

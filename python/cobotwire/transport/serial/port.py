@@ -41,7 +41,7 @@ class _QuietPort(serial.Serial):
                 os.close(descriptor)
 
     def _update_dtr_state(self) -> None:
-        # Opening calls this for DTR, then the same for RTS, which changes nothing any more.
+        # On opening, pyserial calls this, then its method for RTS, which has nothing left to do.
         assert self.fd is not None, "called while opening"
         fcntl.ioctl(self.fd, termios.TIOCMBIC, DTR_AND_RTS)
 

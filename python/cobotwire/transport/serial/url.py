@@ -103,7 +103,7 @@ class UrlTransport:
                 return data
 
     def fileno(self) -> int | None:
-        """Return None: pyserial must read even a port with a descriptor, since spy:// shows it."""
+        """Return None: pyserial must read even a port with a descriptor: spy:// shows each read."""
         with self._faults("cannot be waited for"):
             return None
 

@@ -29,7 +29,8 @@ STREAM_FRAMES = TestCase(
 )
 STREAM_CHUNKS = TestCase(
     "stream-chunks",
-    "A frame is reported as soon as the received bytes, or a silence after them, prove it.",
+    "A frame is reported as soon as the received bytes, or a silence after them, prove that it is "
+    "one.",
     SOURCE,
 )
 STREAM_NOISE = TestCase(
@@ -55,7 +56,7 @@ RANDOM_STREAMS = 240
 
 
 def _streams(codec: Codec) -> Iterator[Question]:
-    """Yield streams around each variant, false headers, and random pieces."""
+    """Yield streams with each variant among noise, with false headers, and of random pieces."""
     variants = list(variants_of(codec.table))
     sizes: set[tuple[str, int]] = set()
     for variant in variants:

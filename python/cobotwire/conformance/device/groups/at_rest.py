@@ -153,7 +153,7 @@ REACHED_AT_REST = Group(
     _reached,
     _is_reached_query,
     sends="The query with the present position, and with others that differ in one joint or axis.",
-    subject="the query whether the arm is in a position",
+    subject="the query that reports whether the arm is in a position",
 )
 JOINT_LIMITS = Group(
     "joint limits",

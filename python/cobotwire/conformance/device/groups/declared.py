@@ -60,7 +60,7 @@ def _present(probe: Probe) -> Request[Any]:
             saved = saved_value(probe.device, setting, query)
             if saved is not None and not saved.obstacle:
                 return saved.old
-    raise NotSupported("the present value cannot be read, so the setting could not be left alone")
+    raise NotSupported("the present value cannot be read, so no request would leave it unchanged")
 
 
 def _facts(probe: Probe) -> None:

@@ -192,7 +192,7 @@ def _together(probe: Probe, request: EncodedRequest) -> None:
 
 
 def _other(table: Table, command: Command) -> Command | None:
-    """Return another query without arguments, of those the one with the shortest deadline.
+    """Return the other query without arguments that has the shortest deadline.
 
     None if the edition has no such query, or its replies do not name the command.
     """
@@ -207,7 +207,7 @@ def _ordered(probe: Probe, other: Command) -> None:
     """Send the query before another one, and after it."""
     device = probe.device
     first = sample_of(device, probe.command)
-    # A query that has no reply fails elsewhere.
+    # A query that has no reply fails another test case.
     device.require(first)
     mine, theirs = (device.requester.prepare(r) for r in (first, other.request_type()))
     for pair in ((mine, theirs), (theirs, mine)):

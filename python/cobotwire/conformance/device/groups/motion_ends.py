@@ -86,7 +86,9 @@ def _interpolate(probe: Probe) -> None:
         if plain and SWITCH in [f.name for variant in query.reply for f in variant.fields]:
             reply = device.read(query.request_type())
             if reply is not None and not reply.fields[SWITCH]:
-                raise NotSupported(f"{query.name} reports that the arm does not report ends")
+                raise NotSupported(
+                    f"{query.name} reports that the ends of motions are not reported"
+                )
 
 
 def _expect_end(

@@ -97,7 +97,7 @@ def _uncounted(table: Table, command: Command) -> _List | None:
 
 
 def _in_order(probe: Probe, points: _List) -> None:
-    """Take the points that are there, add some, read them, and add the first ones again."""
+    """Take the old points out, add new ones, read these, and put the old ones back."""
     take, count = points.take, _count(probe.device, points)
     if take is not None:
         own = _take_own(probe, points, take, count)
