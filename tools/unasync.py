@@ -109,11 +109,12 @@ PASSAGES = [
     ),
     (
         """It runs on the event loop: it must be quick. An exception that it raises goes to
-        ``sys.excepthook``, and to the result's ``failures`` and ``error``; no call raises it.""",
+        ``sys.excepthook``, and to ``failures`` and ``error`` of the returned object; no call raises
+        it.""",
         """It runs in the thread that reads the line: that of any call, or of a loop over ``events``,
         or of :meth:`listen`. It must be quick, and may call the arm. An exception that it raises
-        goes to ``sys.excepthook``, and to the result's ``failures`` and ``error``; no call raises
-        it.""",
+        goes to ``sys.excepthook``, and to ``failures`` and ``error`` of the returned object; no
+        call raises it.""",
     ),
     ("from any task.", "from any thread."),
     ("another task waits for", "another thread waits for"),

@@ -1,7 +1,7 @@
 """The binary of the Rust codec, which ``cobotwire.codec.native`` exports.
 
-It reads a table's objects once, when a codec is made. ``rust/core`` decides what is legal, and
-``cobotwire.protocol.rejection`` makes the sentences of the errors.
+A codec reads the objects of its table once, when it is made. ``rust/core`` decides what is legal,
+and ``cobotwire.protocol.rejection`` makes the sentences of the errors.
 """
 
 from collections.abc import Callable, Sequence
@@ -46,12 +46,12 @@ class NativeCodec:
         """Read a table.
 
         Raises:
-            AttributeError, TypeError, OverflowError: it is not a table, or something in it has the
-                wrong type or is far too large.
-            ValueError: it cannot be interpreted: the header has not 1 to 4 bytes, the check is
-                unknown, the footer does not fit the check, a variant is longer than LEN can say, a
-                number is wider than its encoding allows, a scale or bound is beyond what a double
-                holds exactly, or a field's cases do not fit.
+            AttributeError, TypeError, OverflowError: ``table`` is not a table, or something in it
+            has the wrong type or is far too large. ValueError: the table cannot be interpreted: the
+                header does not have 1 to 4 bytes, the check is unknown, the footer does not fit the
+                check, a variant is longer than LEN can say, a number is wider than its encoding
+                allows, a scale or bound is beyond what a double holds exactly, or a field's cases
+                do not fit.
         """
 
     @property
@@ -144,7 +144,7 @@ class NativeFramer:
     """
 
     def feed(self, data: Data) -> list[Event]:
-        """Take bytes; return what is certain by now, in the order of the stream."""
+        """Take bytes; return the events that have become certain, in the order of the stream."""
 
     def flush(self) -> list[Event]:
         """Reject the incomplete candidate, because the line is idle.
@@ -245,10 +245,10 @@ class NativeColumnReader:
     """
 
     def feed(self, data: Data) -> Columns:
-        """Take bytes; return what has become certain since the last call."""
+        """Take bytes; return the rows that have become certain since the last call."""
 
     def flush(self) -> Columns:
-        """Reject what still waits; return the rest."""
+        """Reject an incomplete frame at the end; return the remaining rows."""
 
     @property
     def pending(self) -> int:
@@ -258,9 +258,9 @@ class NativeColumnReader:
 class NativeCaptureReader:
     """Reads a pcapng recording, piece by piece, into columns with times.
 
-    ``codec_of`` is called with the name, the description and the speed of an interface when a
-    direction of it has its first packet; an exception of it ends reading. While a thread uses the
-    reader, every use by another one raises UsageError and changes nothing.
+    ``codec_of`` is called at the first packet of each direction of an interface, with the name, the
+    description and the speed of the interface. An exception that it raises ends reading. While a
+    thread uses the reader, every use by another one raises UsageError and changes nothing.
     """
 
     def __new__(
@@ -269,7 +269,7 @@ class NativeCaptureReader:
         listening: Listening,
         raw: bool,
     ) -> NativeCaptureReader:
-        """Begin a file; packets of unknown direction hold messages of ``listening``."""
+        """Begin a file; ``listening`` says which messages packets of unknown direction hold."""
 
     def add(self, data: Data) -> None:
         """Take the next bytes of the file; after damage or the end they are ignored."""
@@ -292,9 +292,9 @@ class NativeCaptureReader:
     def status(
         self,
     ) -> tuple[bytes, int, bool, int | None, tuple[int, str, list[int]] | None]:
-        """The name of the writing program, and where reading stands.
+        """The name of the program that wrote the file, and how far it was read.
 
-        That is the number of bytes read; whether the recording was finished; the offset of the
+        How far: the number of bytes read; whether the recording was finished; the offset of the
         incomplete block at the end; and the damage: its offset, its kind and its numbers.
         """
 
@@ -302,8 +302,8 @@ class NativeCaptureReader:
 class NativeSummary:
     """Counts the messages and the noise of a stream, and writes lines of JSON.
 
-    ``bus`` says how packets of the servo bus are read. ``texts`` are the first four texts of the
-    lines (:class:`cobotwire.diagnose.stream_summary.LineTexts`); None: no lines.
+    ``bus`` says how packets of the servo bus are read. ``texts`` are the first four texts of
+    :class:`cobotwire.diagnose.stream_summary.LineTexts`; None: no lines are written.
     :class:`cobotwire.diagnose.stream_summary.StreamSummary` uses it.
     """
 
@@ -318,11 +318,11 @@ class NativeSummary:
         """Start a stream."""
 
     def feed(self, data: bytes, rest: Rest) -> list[Noise | tuple[int, int, str]]:
-        """Take bytes; return the certain items that are not merely counted, in stream order.
+        """Take bytes; return the items that are certain and not only counted, in stream order.
 
         An item is noise to diagnose, or ``(offset, size, lines)`` of frames and of diagnosed noise.
-        ``rest`` does the work that is left to Python; it is called with the items before each
-        complete span of noise.
+        ``rest`` does the work that is left to Python; it is called before each complete span of
+        noise, with the items that precede the span.
         """
 
     def flush(self, rest: Rest) -> list[Noise | tuple[int, int, str]]:
@@ -334,7 +334,7 @@ class NativeSummary:
 
     @property
     def messages(self) -> list[tuple[int, Command | None, int]]:
-        """Id, command and number of frames, in the order of the first frames.
+        """For each message its id, its command and the number of frames, in order of appearance.
 
         The command is None if no message is legal.
         """

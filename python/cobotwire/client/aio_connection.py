@@ -40,7 +40,7 @@ class AsyncConnection:
     ) -> None:
         """Store the arguments; :meth:`open` opens the port.
 
-        Calls may take ``deadline`` seconds; ``inf``: there is no limit.
+        A call may take ``deadline`` seconds; ``inf`` sets no limit.
 
         Raises:
             UsageError: the port or the path of the recording is not allowed, or the transport has a
@@ -143,7 +143,7 @@ class AsyncConnection:
         return AsyncPoller(self._opened, closed)
 
     async def listen(self, seconds: float, done: Callable[[], bool] | None = None) -> None:
-        """Wait while the loop reads what comes without a request, and reports it to listeners.
+        """Wait, while the loop reads what arrives and reports it to listeners.
 
         The wait ends early if ``done`` returns True after something has come.
 
@@ -171,7 +171,7 @@ class AsyncConnection:
                 self._port.close_recording()
 
     def leave_to_parent(self) -> None:
-        """Let every call in a forked child fail: loop and transport are those of the parent."""
+        """Make every call in a forked child fail: loop and transport belong to the parent."""
         if self._steps is not None and self._steps.lost is None:
             error = LinkError(self.url, f"cannot be used: {forks.opened_by_parent()}")
             self._steps.leave_to_parent(error)

@@ -58,7 +58,7 @@ class AsyncDeadMan:
             raise error
 
     def rest(self) -> None:
-        """Expect no sign of life until the next one: the arm is at rest."""
+        """Stop watching until the next sign of life, because the arm is at rest."""
         self._silence.rest()
 
     async def _watch(self) -> None:

@@ -1,4 +1,4 @@
-"""Move the arm, and wait until it is there."""
+"""Move the arm, and wait until it has arrived."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ HOME_SPEED, GRIPPER_SPEED = 10, 50
 
 
 class AsyncMovingClient(AsyncFollowingClient):
-    """Moves the arm and waits until it is there, by commands to which the edition gives a role.
+    """Moves the arm and waits until it has arrived, by commands that have roles in the edition.
 
     A call that fails or is cancelled sends ``stop`` before its error is raised, unless the client
-    was opened with ``on_error="leave"``. It is not an emergency stop: a frame can be lost.
+    was opened with ``on_error="leave"``. This is not an emergency stop: a frame can be lost.
     """
 
     async def move_angles(
@@ -36,18 +36,18 @@ class AsyncMovingClient(AsyncFollowingClient):
         wait: bool = True,
         timeout: float = MOTION_SECONDS,
     ) -> None:
-        """Move all joints to angles, and wait until they are there.
+        """Move all joints to angles, and wait until they have arrived.
 
         Args:
             angles: the target, in degrees, base first.
             speed: percent of the highest speed.
-            wait: False returns when the request is sent.
+            wait: False: return when the request is sent.
             timeout: seconds to wait at most.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the transport is gone.
-            MotionTimeout: the arm is not there in time, or stands still short of the target.
+            MotionTimeout: the arm does not arrive in time, or stands still short of the target.
         """
         command = self.table.in_role("joint targets")
         await self._move(
@@ -63,19 +63,19 @@ class AsyncMovingClient(AsyncFollowingClient):
         wait: bool = True,
         timeout: float = MOTION_SECONDS,
     ) -> None:
-        """Move the end of the arm to coordinates, and wait until it is there.
+        """Move the end of the arm to coordinates, and wait until it has arrived.
 
         Args:
             coords: the target: x, y, z in millimetres, rx, ry, rz in degrees.
             speed: percent of the highest speed.
             mode: the path, as the edition's ``send_coords`` takes it; some editions need none.
-            wait: False returns when the request is sent.
+            wait: False: return when the request is sent.
             timeout: seconds to wait at most.
 
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the transport is gone.
-            MotionTimeout: the arm is not there in time, or stands still short of the target.
+            MotionTimeout: the arm does not arrive in time, or stands still short of the target.
         """
         command = self.table.in_role("coordinate targets")
         others = (speed,) if mode is None else (speed, mode)
@@ -88,8 +88,8 @@ class AsyncMovingClient(AsyncFollowingClient):
     ) -> None:
         """Wait until the arm is at a target to which it was sent.
 
-        The client queries whether it has arrived. If the edition has no query for that, it has
-        arrived once it is within 0.5 degrees and 5 millimetres of the target.
+        The client queries whether the arm has arrived. If the edition has no query for that, the
+        arm counts as arrived once it is within 0.5 degrees and 5 millimetres of the target.
 
         Args:
             target: angles in degrees, or coordinates in millimetres and degrees.
@@ -100,7 +100,7 @@ class AsyncMovingClient(AsyncFollowingClient):
         Raises:
             UsageError: an argument is not allowed; nothing was sent.
             LinkError: the transport is gone.
-            MotionTimeout: the arm is not there in time, or stands still short of the target.
+            MotionTimeout: the arm does not arrive in time, or stands still short of the target.
         """
         check_seconds("timeout", timeout)
         goal = motion.goal_of(self.table, target, kind)
@@ -114,11 +114,11 @@ class AsyncMovingClient(AsyncFollowingClient):
     async def go_home(
         self, speed: int = HOME_SPEED, *, wait: bool = True, timeout: float = MOTION_SECONDS
     ) -> None:
-        """Move all joints to 0 degrees, and wait until they are there.
+        """Move all joints to 0 degrees, and wait until they have arrived.
 
         Args:
             speed: percent of the highest speed.
-            wait: False returns when the request is sent.
+            wait: False: return when the request is sent.
             timeout: seconds to wait at most.
 
         Raises:

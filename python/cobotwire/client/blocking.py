@@ -223,13 +223,13 @@ class Client:
             for event in arm.events(MotionEnded, timeout=5):
                 print(event.status)
 
-        Events are queued from now on until the stream is closed, whichever call reads them.
+        Events are queued from now on until the stream is closed, whichever call receives them.
 
         Args:
             types: classes of events; default: all events of the edition.
             timeout: the loop ends if no event comes for that many seconds; default: never.
-            capacity: how many events wait for the loop. If more come, the oldest is dropped, and
-                counted in the stream's ``lost``.
+            capacity: how many events the queue holds. If more wait for the loop, the oldest is
+            dropped, and counted in the stream's ``lost``.
 
         Returns:
             The stream. Iterating raises LinkError when the transport is gone.
@@ -246,8 +246,8 @@ class Client:
 
         It runs in the thread that reads the line: that of any call, or of a loop over ``events``,
         or of :meth:`listen`. It must be quick, and may call the arm. An exception that it raises
-        goes to ``sys.excepthook``, and to the result's ``failures`` and ``error``; no call raises
-        it.
+        goes to ``sys.excepthook``, and to ``failures`` and ``error`` of the returned object; no
+        call raises it.
 
         Returns:
             An object with a method ``remove``, which ends the calls.
@@ -356,7 +356,7 @@ class Client:
     ) -> None:
         """Send a one-way request at once; wait ``ack_within`` seconds for its acknowledgement.
 
-        If ``ack_within`` is None, it does not wait. ``deadline`` replaces that of the client.
+        If ``ack_within`` is None, do not wait. ``deadline`` replaces that of the client.
         """
         if ack_within is not None:
             check_seconds("ack_within", ack_within)

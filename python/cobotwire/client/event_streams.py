@@ -14,7 +14,7 @@ SLICE_SECONDS = 0.05
 
 
 class EventStream(Generic[EventT]):
-    """Events, in the order in which they came; ``lost`` counts those that found the queue full.
+    """Events, in the order in which they came; ``lost`` counts those that a full queue dropped.
 
     Events are queued from when the stream is made until it is closed.
     """

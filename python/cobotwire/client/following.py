@@ -28,7 +28,7 @@ SILENCE_SECONDS, ARRIVAL_SECONDS = 0.5, 10.0
 
 
 class FollowingClient(Client):
-    """Follows paths, by commands to which the edition gives a role or an effect."""
+    """Follows paths, with the commands that have the needed roles or effects in the edition."""
 
     def follow(
         self,
@@ -48,10 +48,10 @@ class FollowingClient(Client):
         ``motion``).
 
         Args:
-            path: a sequence of targets or of :class:`Waypoint`, or a live source. A sequence is
-                passed on a smooth curve. A live source is an iterator (only its newest target
-                counts), or a function that returns the newest target or None, and raises
-                StopIteration at the end.
+            path: a sequence of targets or of :class:`Waypoint`, or a live source. The arm passes
+                the points of a sequence on a smooth curve. A live source is an iterator (only its
+                newest target counts), or a function that returns the newest target or None, and
+                raises StopIteration at the end.
             speed: percent of the highest speed of the joints; no joint exceeds it.
             rate: setpoints a second; default: 50. It is lowered if the line or the arm is too slow
                 for it; three queries before the motion measure that.
@@ -72,7 +72,7 @@ class FollowingClient(Client):
             LinkError: the transport is gone.
             ReplyTimeout: the arm does not report where it is.
             FollowFailed: the source was silent, the program stalled, the arm was stopped by
-                another part of the program, or it stopped short.
+                another part of the program, or stopped short of the target.
         """
         # Few programs follow paths, and kinematics take long to import.
         import_aside("cobotwire.session.following")
