@@ -51,7 +51,7 @@ def words(command, path):
     context = click.Context(command)
     # The list leaves out subcommands that cannot run here, such as studio without its JavaScript.
     listed = command.list_commands(context) if isinstance(command, click.Group) else ()
-    for name in {*listed, *getattr(command, "verbs", ())}:
+    for name in {*listed, *getattr(command, "subcommands", getattr(command, "verbs", ()))}:
         yield f"{path} {name}"
         yield from words(command.get_command(context, name), f"{path} {name}")
 print(json.dumps([*words(app, "cobotwire"), *(f"exit code {n}: {e.__name__}" for e, n in CODES)]))

@@ -67,7 +67,7 @@ def test_edition_is_given_before_or_after_the_verb(words: str) -> None:
         ("commands --edition mycobot --edition pro400", 2, "given twice: mycobot and pro400"),
         ("--edition mycobot conform cases", 0, "cobotwire: cases does not use --edition\n"),
         ("conform cases --edition mycobot", 2, "No such option"),
-        ("monitr", 2, "there is no command 'monitr'; did you mean monitor?"),
+        ("monitr", 2, "there is no subcommand 'monitr'; did you mean monitor?"),
         ("call /dev/x send_angles 0,0,0,0,0,0 --speed 3", 2, "is written as speed=VALUE"),
         ("call /dev/x go_hom", 2, "did you mean go_home?"),
         ("commands --edition 280", 2, "; did you mean mycobot280?"),

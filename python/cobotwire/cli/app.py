@@ -1,4 +1,4 @@
-"""Put the verbs together; define the options that all of them share."""
+"""Put the subcommands together; define the options that all of them share."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from cobotwire.cli.shared.exit_codes import EPILOG, exit_on_errors, signals_as_i
 from cobotwire.cli.shared.lazy_group import LazyGroup
 from cobotwire.studio.extras import CURVES
 
-# The verbs with their texts, in the order of --help, which imports none of them.
-VERBS = {
+# The subcommands with their texts, in the order of --help, which imports none of them.
+SUBCOMMANDS = {
     "demo": "Drive a simulated arm; check every reply.",
     "ports": "List serial ports, likely ones first.",
     "identify": "Find out which edition an arm speaks.",
@@ -41,12 +41,12 @@ VERBS = {
 
 
 class _App(LazyGroup):
-    verbs = VERBS
+    subcommands = SUBCOMMANDS
     modules = "cobotwire.cli."
 
     def list_commands(self, context: click.Context) -> list[str]:
-        """Return the verbs; a package that was built without the studio's page lacks that one."""
-        return [verb for verb in VERBS if verb != "studio" or CURVES.is_file()]
+        """Return the subcommands, without ``studio`` if the package was built without its page."""
+        return [name for name in SUBCOMMANDS if name != "studio" or CURVES.is_file()]
 
     def invoke(self, context: click.Context) -> Any:
         with signals_as_interrupt(), exit_on_errors():

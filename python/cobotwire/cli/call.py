@@ -75,8 +75,8 @@ def call(
     whether the arm acknowledged the request.
 
     Before a motion that has arguments, the arm's power, pause and error register are queried. If
-    it would not obey, the motion is not sent; --force sends it. After the motion the error register
-    is read again, since no reply reports a rejected motion.
+    the arm would not obey, the motion is not sent, unless --force is given. After the motion the
+    error register is read again, since no reply reports a rejected motion.
     """  # noqa: D301  (click keeps the lines of a paragraph that starts with the character \b)
     if name is None:
         message = (

@@ -7,7 +7,7 @@ import click
 from cobotwire.cli.shared.edition_option import edition_option
 from cobotwire.cli.shared.lazy_group import LazyGroup
 
-VERBS = {
+SUBCOMMANDS = {
     "info": "Show times, messages, rates, gaps and noise.",
     "cut": "Write part of a recording: a time range, some commands.",
     "merge": "Write several recordings into one, by time.",
@@ -16,7 +16,7 @@ VERBS = {
 
 
 class _Capture(LazyGroup):
-    verbs = VERBS
+    subcommands = SUBCOMMANDS
     modules = "cobotwire.cli.capture_"
 
 

@@ -18,7 +18,7 @@ from cobotwire.protocol.printable import printable
 @click.argument("files", nargs=-1, required=True, type=click.Path(), metavar="FILE...")
 @output_options
 def merge(files: tuple[str, ...], output: str, overwrite: bool) -> None:
-    """Write the recordings FILE... into OUT, by the times of their packets.
+    """Write the packets of the recordings FILE... into OUT, in the order of their times.
 
     Each interface of each FILE becomes an interface of OUT, with its own name and edition. The
     times do not change. Packets from different computers are in the right order only if the clocks

@@ -14,7 +14,7 @@ SHELLS = ("bash", "zsh", "fish")
 @click.argument("shell", type=click.Choice(SHELLS))
 @click.pass_context
 def completion(context: click.Context, shell: str) -> None:
-    """Print the script with which SHELL completes verbs, commands, editions, scenarios and ports.
+    """Print the script that makes SHELL complete subcommands, commands, editions, scenarios, ports.
 
     Load it in the start file of the shell:
 

@@ -7,10 +7,10 @@ import click
 from cobotwire.cli.shared.edition_option import edition_option
 from cobotwire.cli.shared.lazy_group import LazyGroup
 
-VERBS = {
+SUBCOMMANDS = {
     "device": "Test the arm at URL against an edition.",
     "client": "Serve an arm, and check the client that controls it.",
-    "codec": "Test a codec, which COMMAND runs, against an edition.",
+    "codec": "Test the codec that COMMAND runs against an edition.",
     "compare": "Compare two reports on the same subject.",
     "matrix": "Show several implementations side by side.",
     "verify": "Check the digest and the signature of a report or survey.",
@@ -20,7 +20,7 @@ VERBS = {
 
 
 class _Conform(LazyGroup):
-    verbs = VERBS
+    subcommands = SUBCOMMANDS
     modules = "cobotwire.cli.conform_"
 
 

@@ -71,7 +71,7 @@ from cobotwire.simulator.tcp import address
 @click.option(
     "--command",
     metavar="COMMAND",
-    help="Start this client ({port} becomes the port), and end when it ends.",
+    help="Start this client ({port} stands for the port), and end when it ends.",
 )
 @click.option(
     "--again",

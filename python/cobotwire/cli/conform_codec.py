@@ -49,7 +49,7 @@ def codec(
     again: str | None,
     wanted: ReportOptions,
 ) -> None:
-    """Test a codec, which COMMAND runs, against an edition.
+    """Test the codec that COMMAND runs against an edition.
 
     COMMAND reads questions on standard input and writes answers on standard output, as
     docs/codec-protocol.md describes:

@@ -45,7 +45,7 @@ def _show(found: Comparison) -> None:
     table = Table("", "command", "test case", "before", "after", "what was found")
     for change in found.changes:
         outcomes = (change.before or "no result", change.after or "no result")
-        row = (change.kind, change.command or "the line", change.case, *outcomes, change.reason)
+        row = (change.kind, change.command or "(transport)", change.case, *outcomes, change.reason)
         # As plain text, because what a report quotes may look like markup.
         table.add_row(*(Text(printable(part)) for part in row), style=STYLES.get(change.kind))
     if found.changes:

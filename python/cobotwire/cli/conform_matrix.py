@@ -28,8 +28,9 @@ FACTS = ("subject", "edition", "firmware", "tester", "started", "conforms")
 def matrix(reports: tuple[str, ...], as_json: bool) -> None:
     """Show REPORTS, which were written with --json, side by side.
 
-    A column is a report: of several arms, firmwares, clients or codecs. The first table counts the
-    verdicts of each test case, the second one lists the verdicts that differ.
+    Each column is one report. Compare, for example, several arms, firmwares, clients or codecs. The
+    first table counts the verdicts of each test case, the second one lists the verdicts that
+    differ.
 
     Exit codes: 0 all subjects conform; 1 one does not; 2 a file is not a report.
     """
@@ -71,13 +72,13 @@ def _show(reports: Sequence[Report], rows: Sequence[Row]) -> None:
     console.print("Verdicts that differ:")
     table = _table("test case", "command", *letters)
     for row in differing:
-        names = (row.case, row.command or "the line", *(each or "-" for each in row.outcomes))
+        names = (row.case, row.command or "(transport)", *(each or "-" for each in row.outcomes))
         table.add_row(*(Text(printable(name)) for name in names))
     console.print(table)
 
 
 def _table(*names: str) -> Table:
-    """Return a table with whole words in its first two columns."""
+    """Return a table in which the first two columns do not wrap."""
     table = Table()
     for index, name in enumerate(names):
         table.add_column(name, no_wrap=index < 2)

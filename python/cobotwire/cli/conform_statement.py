@@ -14,8 +14,8 @@ from cobotwire.conformance.statement import statement_template
 def statement(edition: str) -> None:
     """Print the template of an implementation conformance statement (YAML) for an edition.
 
-    In it a maker declares what a device has and lacks; `conform device --statement FILE` selects
-    the test cases by it, and tests whether it is true:
+    A maker declares in it what a device has and lacks. `conform device --statement FILE` selects
+    the test cases accordingly, and tests whether the statement is true:
 
     \b
       cobotwire conform statement --edition mycobot280 > statement.yaml

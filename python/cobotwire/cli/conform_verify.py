@@ -27,9 +27,9 @@ from cobotwire.protocol.printable import printable
 )
 @click.option("--json", "as_json", is_flag=True, help="Print a JSON object.")
 def verify(report: str, key: str | None, as_json: bool) -> None:
-    """Check that REPORT (JSON, or a survey) was not changed, and who signed it.
+    """Check whether REPORT (JSON, or a survey) was changed, and show who signed it.
 
-    A right signature shows that the owner of the printed key signed the report. To check that this
+    A valid signature shows that the owner of the printed key signed the report. To check that this
     is the tester, pass --key with the public key that the tester gave you.
 
     Exit codes: 0 the report was not changed, and with --key, that key signed it; 1 otherwise;
@@ -57,7 +57,7 @@ def _mistake(seal: Seal, wanted: str | None) -> str:
     if seal.digest != seal.stated:
         return f"The report was changed: its digest is {seal.digest}, not {printable(seal.stated)}."
     if seal.signature == "wrong":
-        return "The signature is wrong: it is of another report, or of another key."
+        return "The signature is wrong: it was made for another report, or with another key."
     if wanted is not None and not seal.key:
         return "The report is not signed."
     if wanted is not None and seal.key != wanted:

@@ -63,9 +63,9 @@ def decode(
     several files counts all of them. If an argument is both hex and an existing file, write ./NAME
     for the file or 0xNAME for the bytes.
 
-    A recording (pcapng, which other verbs write with --record) is decoded packet by packet. Each
-    frame is decoded in the direction in which it was sent, and printed with its time. If a packet
-    does not state its direction, --direction says which messages it holds.
+    A recording (pcapng, as other subcommands write it with --record) is decoded packet by packet.
+    Each frame is decoded in the direction in which it was sent, and printed with its time. If a
+    packet does not state its direction, --direction says which messages it holds.
 
     FILE may also be raw bytes, hex text, bytes as Python prints them, the TCP packets of a pcap
     file, or the output of socat -x, xxd, hexdump -C, od, candump, Saleae Logic, PulseView or

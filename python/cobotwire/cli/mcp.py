@@ -45,8 +45,8 @@ def mcp(
     when the client closes them. URL is a serial port, or a URL such as socket://host:9000.
 
     By default only queries are sent. --allow-motion also offers tools that move and change the
-    arm. stop is always offered. A motion is stopped once if no message comes for --silence seconds,
-    and when the client leaves.
+    arm. stop is always offered. A motion is stopped if no message comes for --silence seconds, or
+    when the client disconnects.
     """
     try:
         import_module("mcp.server")

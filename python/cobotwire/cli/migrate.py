@@ -66,7 +66,8 @@ def _read(script: str) -> str:
     except OSError as error:
         raise UsageError("script", script, message=f"{script}: {error.strerror}") from None
     except UnicodeDecodeError as error:
-        raise UsageError("script", script, f"a readable program in UTF-8 ({error})") from None
+        message = f"{script} is not a program in UTF-8: {error}"
+        raise UsageError("script", script, message=message) from None
 
 
 def _show_diff(script: str, before: str, after: str) -> None:

@@ -27,8 +27,8 @@ from cobotwire.inspect.monitor import FollowingMonitor, monitored
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.json_values import as_json_value
 
-# The columns of a number with its name and a space; the columns of the borders, minus that space
-# after the last number.
+# The width of a number with its name and the space after it; the width of the borders, less the
+# space that the last number does not need.
 NUMBER_COLUMNS, BORDER_COLUMNS = 13, 5
 
 
@@ -77,7 +77,7 @@ def monitor(
         ):
             _print(port, Monitor(arm, codecs.load(table), rate).samples(count), as_json)
     except KeyboardInterrupt:
-        # Ctrl-C is the usual way to end this verb, not a failure.
+        # Ctrl-C is the usual way to end this subcommand, not a failure.
         sys.exit(0)
 
 
@@ -96,7 +96,7 @@ def _print(port: str, samples: Iterator[Observation], as_json: bool) -> None:
 
 @contextmanager
 def _signals_wait() -> Iterator[None]:
-    """Delay Ctrl-C while the table is written; otherwise a part of it would appear twice."""
+    """Delay Ctrl-C while the table is written; otherwise part of the table would appear twice."""
     if sys.platform == "win32":
         yield
         return

@@ -28,7 +28,7 @@ NOT_ALLOWED = "you have no permission to open it"
 def ports(fix: bool, as_json: bool) -> None:
     """List the serial ports that may lead to an arm, likely ones first, with the reason.
 
-    With --fix, print what to do on this system so that they can be opened: permissions, names,
+    With --fix, print what to do on this system so that the ports can be opened: permissions, names,
     drivers, and the programs that have them open. Nothing is changed.
 
     No port is opened. Exit codes: 0 there is a likely port; 1 there is none.
@@ -48,7 +48,7 @@ def ports(fix: bool, as_json: bool) -> None:
     else:
         lines = [line for port in found for line in _lines(port)] or [remedies.missing(computer)]
     text = "\n".join(lines)
-    # Commands are not broken, so that they can be copied.
+    # Commands are not wrapped, so that they can be copied.
     click.echo(text if fix or as_json else fold(text))
     if not (is_found or fix or as_json):
         click.echo(fold(NOT_FOUND, err=True), err=True)

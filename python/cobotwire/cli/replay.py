@@ -41,8 +41,9 @@ def replay(
     With --serve, serve the recorded arm on a pseudo-terminal instead, and print its name. The arm
     replies to each recorded request as recorded, with the same delay and the same noise.
 
-    The timeline shows all interfaces, and --serve serves the first one, unless --interface chooses.
-    The edition is the one that the recording names; --edition applies if it names none.
+    By default the timeline shows all interfaces, and --serve serves the first one; --interface
+    chooses one. The edition is the one that the recording names; --edition applies if it names
+    none.
     """
     with open_recording(file) as capture:
         if not as_arm:

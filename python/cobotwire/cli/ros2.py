@@ -38,7 +38,7 @@ _LAST_DOMAIN = 232
 @click.option(
     "--interface",
     metavar="NAME|ADDRESS",
-    help="The network interface, for other computers [default: this computer only].",
+    help="The network interface to publish on [default: this computer only].",
 )
 @motion_options(silence=1.0)
 @uses_edition
@@ -56,7 +56,8 @@ def ros2(
     """Publish the arm at URL on the topics of ROS 2, until Ctrl-C; ROS need not be installed.
 
     /joint_states has the joints in radians, and /tf has the pose of the end of the arm in the
-    frame `base`. /diagnostics has the state of line and arm, once a second. Only queries are sent.
+    frame `base`. /diagnostics has the state of the port and the arm, once a second. Only queries
+    are sent.
 
     With --allow-motion the arm follows what comes on /joint_trajectory, within the limits; it is
     stopped when nobody publishes that topic for --silence seconds, and at the end.
@@ -101,5 +102,5 @@ def ros2(
         try:
             asyncio.run(run(at_end))
         except KeyboardInterrupt:
-            # Ctrl-C is the usual way to end this verb, not a failure.
+            # Ctrl-C is the usual way to end this subcommand, not a failure.
             sys.exit(0)

@@ -15,7 +15,7 @@ from cobotwire.pymycobot.running import run_program
     type=click.Choice(["raise", "return"]),
     default="raise",
     show_default=True,
-    help="What a call that fails does: raise an error, or return -1 as in the library.",
+    help="What a call that fails does: raise an error, or return -1 as pymycobot does.",
 )
 @click.argument("script", type=click.Path())
 @click.argument("arguments", nargs=-1, type=click.UNPROCESSED)

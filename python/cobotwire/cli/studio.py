@@ -1,4 +1,4 @@
-"""``cobotwire studio``: show an arm, its line or a recording in the browser."""
+"""``cobotwire studio``: show an arm and its traffic, or a recording, in the browser."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def studio(
 
     URL is a serial port, or a URL such as socket://host:9000. Without it, a simulated arm is
     started, which the page may move. follow:RECORDING shows live what another program, such as
-    cobotwire tap, records. The page shows the arm in 3D, curves, and every frame on the line,
+    cobotwire tap, records. The page shows the arm in 3D, charts of its values, and every frame,
     byte by byte; sliders and buttons move the arm.
 
     The first line of output is the address of the page. It contains a secret: whoever has it can

@@ -42,10 +42,10 @@ from cobotwire.transport.serial.ports import leads_to_device
 from cobotwire.transport.tapped import tapped
 
 WORKSPACE = (
-    "The arm will make a few small slow motions, up to 5 degrees from where each joint is; a fact "
-    "that is wrong may make one larger. Any key stops it. An arm that is off is switched on, and "
-    "off again at the end; then it sinks. Is the workspace clear, the emergency stop within "
-    "reach, the gripper empty, and the arm supported?"
+    "The arm will make a few small slow motions, up to 5 degrees from where each joint is; if a "
+    "fact of the edition is wrong, one may be larger. Any key stops the arm. An arm that is off is "
+    "switched on, and off again at the end; then it sinks. Is the workspace clear, the emergency "
+    "stop within reach, the gripper empty, and the arm supported?"
 )
 
 NOT_SHOWN = (
@@ -109,8 +109,8 @@ def survey(
     It takes at most ten minutes. At first only queries are sent, and what the arm reports is
     compared: encoders with angles, angles with coordinates, targets with readings. --settings
     also changes settings that a power cycle resets, and restores them. --allow-motion also moves
-    the arm, after a question; any key stops it. If the arm is off, it is switched on, and off again
-    at the end: then it sinks.
+    the arm, after you have confirmed that; any key stops it. If the arm is off, it is switched on,
+    and off again at the end: then it sinks.
 
     A USB port shows that the arm is a real one. For another port, such as socket://HOST:PORT, and
     for a recording, add --real-arm if the arm is real; without it, the survey counts as one of a
@@ -178,10 +178,10 @@ def survey(
 
 
 def _earlier(path: str, table: Table, to: int | str | None) -> tuple[dict[str, Any], bytes]:
-    """Return the content and the recording of the survey of this device that is continued."""
+    """Return the content and the recording of the survey to continue, if it is of this device."""
     content, recording = read_survey(path)
     if content.get("edition") != table.edition:
-        message = f"{path} is the survey of edition {content.get('edition')!r}"
+        message = f"{path} is the survey of edition {content.get('edition')!r}: add --edition"
         raise UsageError("continue", path, message=message)
     address = content.get("address")
     if address != to:
@@ -199,7 +199,7 @@ def _confirm_workspace() -> None:
 
 
 def _recorded(path: str, edition: str) -> tuple[str, RecordedTransport]:
-    """Return the edition of a recording, and the arm of its first interface."""
+    """Return the edition of a recording, and a transport that replays its first interface."""
     with open_recording(path) as capture:
         packets = list(packets_of_interface(capture, 0))
         codec = codec_of_interface(capture, 0, edition)

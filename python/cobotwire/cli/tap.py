@@ -41,7 +41,7 @@ from cobotwire.transport import open_transport
 @click.command()
 @click.argument("port", metavar="URL", shell_complete=complete_ports)
 @arm_options
-@click.option("--tcp", metavar="[HOST]:PORT", help="Offer a TCP port instead; :0 is a free one.")
+@click.option("--tcp", metavar="[HOST]:PORT", help="Offer TCP instead of a pty; :0 is a free port.")
 @click.option("--read-only", is_flag=True, help="Let only queries and stop commands pass.")
 @click.option(
     "--only",
@@ -111,7 +111,7 @@ def _watch(
     copies: int,
     begin: Callable[[], None],
 ) -> None:
-    """Watch in the watching process; report errors as every verb does."""
+    """Watch in the watching process; report errors as every subcommand does."""
     # A pty hangs up only when no process has it open.
     program.close()
     with exit_on_errors(), closing(show.lines):
@@ -184,7 +184,7 @@ class _Show:
             if not self._ended:
                 self.lines.print(line)
         except OSError as error:
-            # The recording continues: only the disk of the output may be full.
+            # The recording continues: perhaps only the disk that holds the output is full.
             self._ended = True
             click.echo(f"cobotwire: the output ends here: {error}", err=True)
 

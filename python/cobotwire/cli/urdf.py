@@ -18,7 +18,7 @@ from cobotwire.kinematics.urdf_writing import write_urdf
 )
 @click.option("--prefix", default="", help="Begin each name of a link or joint, as in left_j1.")
 def urdf(name: str, output: str, prefix: str) -> None:
-    """Write the arm of EDITION as a URDF, where its geometry is known.
+    """Write the arm of EDITION as a URDF, if its geometry is known.
 
     The joints are j1, j2 and so on, with the limits and the highest speed that the edition
     states; the links are base, link1 and so on, and flange. The cylinders show where the links are,

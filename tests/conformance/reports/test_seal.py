@@ -90,7 +90,7 @@ def test_signed_report_is_verified_with_the_key_of_its_tester(
     file.write_text(json.dumps(document))
     assert verify(file) == (
         1,
-        "The signature is wrong: it is of another report, or of another key.\n",
+        "The signature is wrong: it was made for another report, or with another key.\n",
     )
 
 

@@ -1,1 +1,1 @@
-"""Hold what several verbs share: options, output formats, exit codes."""
+"""Hold what several subcommands share: options, output formats, exit codes."""

@@ -16,7 +16,7 @@ else:
     import termios
     import tty
 
-# The interval, in seconds, at which the end of the block is noticed.
+# How often, in seconds, the thread checks whether the block has ended.
 POLL = 0.1
 
 

@@ -1,4 +1,4 @@
-"""Open the port of an arm with the options of the verb, and record its traffic on request."""
+"""Open the port of an arm with the options of the subcommand, and record its traffic on request."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cobotwire.cli.shared.output import report_written
 from cobotwire.protocol.table import Table
 from cobotwire.transport import OpenedTransport, TappedTransport, open_transport
 
-Verb = Callable[..., Any]
+Subcommand = Callable[..., Any]
 
 baudrate_option = click.option(
     "--baudrate", type=int, help="Bits a second [default: the edition's]."
@@ -29,19 +29,19 @@ def parse_address(text: str) -> int | str:
     return int(text) if text.isascii() and text.isdigit() else text
 
 
-def arm_options(verb: Verb) -> Verb:
-    """Add the options of every verb that opens the port of an arm."""
+def arm_options(subcommand: Subcommand) -> Subcommand:
+    """Add the options of every subcommand that opens the port of an arm."""
     record_option = click.option(
         "--record", type=click.Path(), metavar="FILE", help="Record all traffic to FILE (pcapng)."
     )
-    return baudrate_option(record_option(verb))
+    return baudrate_option(record_option(subcommand))
 
 
 @contextmanager
 def open_arm(
     port: str, table: Table, baudrate: int | None, record: str | None
 ) -> Iterator[OpenedTransport]:
-    """Open a port; close it at the end, and finish the recording, whatever happened.
+    """Open a port; at the end close it and finish the recording, even after an error.
 
     Raises:
         UsageError: the port, the baud rate or the file is not allowed. Nothing was sent.

@@ -1,4 +1,4 @@
-"""What the verbs of ``cobotwire capture`` share: options, sizes, and the texts of times."""
+"""What the subcommands of ``cobotwire capture`` share: options, sizes, and the texts of times."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from cobotwire.capture.export.inputs import COMPRESSED
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 
-def output_options(verb: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options of a verb that writes a recording."""
-    verb = click.option("--overwrite", is_flag=True, help="Replace OUT if it exists.")(verb)
+def output_options(subcommand: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options of a subcommand that writes a recording."""
+    overwrite = click.option("--overwrite", is_flag=True, help="Replace OUT if it exists.")
     help = "The recording to write."
-    option = click.option("-o", "--output", required=True, metavar="OUT", help=help)
-    return option(verb)
+    output = click.option("-o", "--output", required=True, metavar="OUT", help=help)
+    return output(overwrite(subcommand))
 
 
 def recorded_size(paths: Iterable[str]) -> int | None:
-    """Return the bytes of recordings; None if they are not known before they are decompressed."""
+    """Return the size of recordings in bytes; None if one is compressed, or is not a file."""
     total = 0
     for path in paths:
         if not os.path.isfile(path) or path.endswith((*COMPRESSED,)):

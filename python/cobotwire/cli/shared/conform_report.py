@@ -26,7 +26,7 @@ from cobotwire.protocol.errors import CobotwireError, UsageError
 from cobotwire.protocol.printable import printable
 
 CONFORMS, DOES_NOT, NOT_TESTABLE = 0, 1, 2
-# The first characters of an exchange that are printed: 67 bytes in hex.
+# How many characters of an exchange are printed: 67 bytes in hex.
 SHOWN = 200
 
 
@@ -45,7 +45,7 @@ class ReportOptions:
     """The caller's options for the report, and the facts about the run that it states.
 
     ``json``, ``html`` and ``junit`` are names of files; ``-`` is standard output. ``expected`` is
-    the text of the file of known failures. ``watch`` observes the host since the verb began.
+    the text of the file of known failures. ``watch`` observes the host since the subcommand began.
     """
 
     json: str | None = None
@@ -59,10 +59,10 @@ class ReportOptions:
     watch: HostWatch = field(default_factory=HostWatch)
 
 
-def report_options(verb: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options for reports; the verb gets them as ``wanted``."""
+def report_options(subcommand: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options for reports; the subcommand gets them as ``wanted``."""
 
-    @wraps(verb)
+    @wraps(subcommand)
     def with_report(
         *words: Any,
         json: str | None,
@@ -80,7 +80,7 @@ def report_options(verb: Callable[..., Any]) -> Callable[..., Any]:
             signer = None if sign is None else load_signer(sign)
             known = "" if expected is None else text_of_file("expected", expected)
         wanted = ReportOptions(json, html, junit, tester, serial, signer, known, expected or "")
-        return verb(*words, wanted=wanted, **options)
+        return subcommand(*words, wanted=wanted, **options)
 
     details = {
         "--sign": "With --json: sign the report with this private key (Ed25519).",
@@ -105,7 +105,7 @@ def report_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     }
     for name, text in help.items():
         if name == "--json":
-            # As in every other verb, --json alone prints JSON.
+            # As in every other subcommand, --json alone prints JSON.
             json_option = click.option(
                 name,
                 type=click.Path(),

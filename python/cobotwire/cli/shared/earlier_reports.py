@@ -1,4 +1,4 @@
-"""Read the report of an earlier run, which a run continues or repeats."""
+"""Read the report of an earlier run, to continue or repeat that run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The option ``--edition``, which is given before the verb or after it."""
+"""The option ``--edition``, which is given before the subcommand or after it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import click
 from cobotwire.cli.shared.completers import complete_editions
 from cobotwire.editions import DEFAULT
 
-# The key of the given editions in ``meta``, which the contexts of groups and verb share.
+# The key of the given editions in ``meta``, the dictionary that nested contexts share.
 _GIVEN = "cobotwire.editions"
 
 
@@ -35,13 +35,15 @@ edition_option = click.option(
 )
 
 
-def uses_edition(verb: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a verb the option, and the edition as its first argument."""
-    return edition_option(click.pass_obj(verb))
+def uses_edition(subcommand: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a subcommand the option, and the edition as its first argument."""
+    return edition_option(click.pass_obj(subcommand))
 
 
-def note_unused(context: click.Context, verb: click.Command) -> None:
-    """Print to standard error that a verb does not use the edition that was given before it."""
-    takes = isinstance(verb, click.Group) or any("--edition" in p.opts for p in verb.params)
+def note_unused(context: click.Context, subcommand: click.Command) -> None:
+    """Print to standard error that a subcommand does not use the ``--edition`` before it."""
+    takes = isinstance(subcommand, click.Group) or any(
+        "--edition" in p.opts for p in subcommand.params
+    )
     if context.meta.get(_GIVEN) and not takes:
-        click.echo(f"cobotwire: {verb.name} does not use --edition", err=True)
+        click.echo(f"cobotwire: {subcommand.name} does not use --edition", err=True)

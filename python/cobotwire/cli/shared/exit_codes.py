@@ -1,4 +1,4 @@
-"""Turn cobotwire's errors into one line on standard error and an exit code; signals, too."""
+"""Turn errors of cobotwire into a line on standard error and an exit code; handle signals."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ _ended_by: list[int] = []
 
 
 def note_signal(number: int) -> None:
-    """Remember what ends the program; ignore further ones, since ``timeout`` sends two."""
+    """Remember the signal that ends the program; ignore its repeats: ``timeout`` sends it twice."""
     if number in ENDING:
         signal.signal(number, signal.SIG_IGN)
         _ended_by.append(number)

@@ -8,12 +8,12 @@ from cobotwire.capture.export import Report
 from cobotwire.protocol.counted import counted
 from cobotwire.protocol.printable import printable
 
-# Messages and files that are listed by name.
+# How many notes, messages and files are listed.
 LISTED = 20
 
 
 def report_lines(report: Report) -> Iterator[str]:
-    """Yield what was read, what was written, and what could not be."""
+    """Yield what was read, what was left out or could not be read, and what was written."""
     yield from map(printable, report.notes[:LISTED])
     if (more := len(report.notes) - LISTED) > 0:
         yield f"and {counted(more, 'other note')}; --json lists each"

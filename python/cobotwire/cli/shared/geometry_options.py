@@ -8,8 +8,8 @@ from typing import Any
 import click
 
 
-def geometry_options(verb: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options of verbs that simulate or draw the arm."""
+def geometry_options(subcommand: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options of subcommands that simulate or draw the arm."""
     file = click.option(
         "--geometry",
         type=click.Path(),
@@ -19,4 +19,4 @@ def geometry_options(verb: Callable[..., Any]) -> Callable[..., Any]:
     tip = click.option(
         "--tip", metavar="LINK", help="With --geometry: the link that is the arm's flange."
     )
-    return file(tip(verb))
+    return file(tip(subcommand))

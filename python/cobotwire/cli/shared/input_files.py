@@ -12,7 +12,7 @@ import click
 from cobotwire.capture.byte_source import hex_arguments
 from cobotwire.protocol.errors import UsageError
 
-Verb = TypeVar("Verb", bound=Callable[..., None])
+Subcommand = TypeVar("Subcommand", bound=Callable[..., None])
 # The formats of files that ``--read-as`` names; ``--raw`` and ``--hex`` are two of them.
 FORMATS = (
     *("raw", "hex", "xxd", "hexdump", "od", "python", "socat", "pymycobot", "candump"),
@@ -20,7 +20,7 @@ FORMATS = (
 )
 
 
-def reading_options(verb: Verb) -> Verb:
+def reading_options(subcommand: Subcommand) -> Subcommand:
     """Add the options that choose the format of files."""
     for option in (
         click.option(
@@ -40,8 +40,8 @@ def reading_options(verb: Verb) -> Verb:
         click.option("--hex", "format", flag_value="hex", help="FILE holds hex text."),
         click.option("--raw", "format", flag_value="raw", help="FILE holds raw bytes."),
     ):
-        verb = option(verb)
-    return verb
+        subcommand = option(subcommand)
+    return subcommand
 
 
 def input_files(arguments: Sequence[str]) -> list[str] | None:

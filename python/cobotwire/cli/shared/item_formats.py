@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from cobotwire.diagnose import Finding, Item
     from cobotwire.diagnose.stream_summary import LineTexts
 
-# Bytes of a finding that are shown on its line.
+# How many bytes of a finding its line shows.
 SHOWN = 16
 
 Format = Callable[["Item"], str]
@@ -77,7 +77,7 @@ def _pieces(item: Item) -> str:
 
 
 def byte_by_byte(reader: FrameReader, table: Table, paint: Paint | None) -> Format:
-    """Return a formatter: each byte of a frame on a line; noise, and why it is not a frame."""
+    """Return a formatter: each part of a frame on a line; for noise, why it is not a frame."""
 
     def format(item: Item) -> str:
         readings = reader.read(item.data)
@@ -119,7 +119,7 @@ def as_object(reader: FrameReader, item: Item) -> dict[str, Any]:
 def line_texts(table: Table, file: str | None) -> LineTexts:
     """Return the texts for the native codec's lines, equal to those of :func:`as_object`.
 
-    ``file`` is the first value of each line; None: it has none.
+    ``file`` is the first value of each line; None: lines name no file.
     """
     from cobotwire.diagnose.stream_summary import LineTexts
 

@@ -1,4 +1,4 @@
-"""A group of verbs that imports a verb when it is used."""
+"""A group of subcommands; each is imported when it is used."""
 
 from __future__ import annotations
 
@@ -11,43 +11,50 @@ from cobotwire.protocol.errors import did_you_mean
 
 
 class LazyGroup(click.Group):
-    """A group of verbs with their summaries, so that ``--help`` and one verb import no other verb.
+    """A group of subcommands with their summaries.
 
-    The verb NAME is the function NAME in the module MODULES + NAME.
+    Since it holds the summaries, neither ``--help`` nor a subcommand imports another one.
+
+    The subcommand NAME is the function NAME in the module MODULES + NAME.
     """
 
-    # Each verb with its text in --help, in the order of --help.
-    verbs: dict[str, str]
+    # Each subcommand with its text in --help, in the order of --help.
+    subcommands: dict[str, str]
     modules: str
 
     def list_commands(self, context: click.Context) -> list[str]:
-        """Return the names of the verbs."""
-        return list(self.verbs)
+        """Return the names of the subcommands."""
+        return list(self.subcommands)
 
     def get_command(self, context: click.Context, name: str) -> click.Command | None:
-        """Import a verb; return None if there is none of that name."""
-        if name not in self.verbs:
+        """Import a subcommand; return None if there is none of that name."""
+        if name not in self.subcommands:
             return None
-        verb = getattr(import_module(self.modules + name), name)
-        assert isinstance(verb, click.Command), f"{name} is a verb"
+        subcommand = getattr(import_module(self.modules + name), name)
+        assert isinstance(subcommand, click.Command), f"{name} is a subcommand"
         # For completion.
-        verb.short_help = self.verbs[name]
-        return verb
+        subcommand.short_help = self.subcommands[name]
+        return subcommand
 
     def resolve_command(
         self, context: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Return the verb that the first word names, and the words after it."""
+        """Return the subcommand that the first word names, and the words after it."""
         word = args[0]
-        if word not in self.verbs and not (word.startswith("-") or context.resilient_parsing):
+        if word not in self.subcommands and not (word.startswith("-") or context.resilient_parsing):
             hint = did_you_mean(word, self.list_commands(context))
-            context.fail(f"there is no command {word!r}{hint}")
-        name, verb, rest = super().resolve_command(context, args)
-        if verb is not None and not context.resilient_parsing:
-            note_unused(context, verb)
-        return name, verb, rest
+            context.fail(f"there is no subcommand {word!r}{hint}")
+        name, subcommand, rest = super().resolve_command(context, args)
+        if subcommand is not None and not context.resilient_parsing:
+            note_unused(context, subcommand)
+        return name, subcommand, rest
 
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the list of the verbs."""
+        """Write the list of the subcommands."""
         with formatter.section("Commands"):
-            formatter.write_dl([(verb, self.verbs[verb]) for verb in self.list_commands(context)])
+            formatter.write_dl(
+                [
+                    (subcommand, self.subcommands[subcommand])
+                    for subcommand in self.list_commands(context)
+                ]
+            )

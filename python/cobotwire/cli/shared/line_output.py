@@ -24,7 +24,8 @@ class LineOutput:
     """Prints lines to standard output; into a pipe only as fast as its reader takes them.
 
     A pipe that nobody reads is full after some hundred lines, and the next write would stop the
-    server and the arm. So lines wait, further ones are left out, and a line says how many.
+    server and the arm. So lines are queued. When the queue is full, further lines are left out, and
+    a line says how many.
     """
 
     def __init__(self, left_out: Callable[[int], str]) -> None:
@@ -48,7 +49,7 @@ class LineOutput:
         self.flush()
 
     def redirect(self, print_line: Callable[[str], None]) -> None:
-        """Give each line of a terminal to ``print_line``, because a live table is on the screen."""
+        """Pass each line for a terminal to ``print_line``, because a live table is shown."""
         self._print_line = print_line
 
     def flush(self) -> None:

@@ -1,4 +1,4 @@
-"""The options of every verb that lets others move an arm: pages, programs, machines."""
+"""The options of each subcommand that lets a page or another program move the arm."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import click
 from cobotwire.client.opening import check_seconds
 from cobotwire.protocol.limits import AXES, Limits, Range, checked_ranges
 
-Verb = Callable[..., Any]
+Subcommand = Callable[..., Any]
 
 
 class MotionOptions(NamedTuple):
@@ -45,8 +45,8 @@ def _range(text: str) -> Range | None:
     return low, high
 
 
-def motion_options(silence: float) -> Callable[[Verb], Verb]:
-    """Return a decorator that gives a verb these options as its argument ``motion``.
+def motion_options(silence: float) -> Callable[[Subcommand], Subcommand]:
+    """Return a decorator that gives a subcommand these options as its argument ``motion``.
 
     ``silence`` is the default of ``--silence``.
     """
@@ -78,8 +78,8 @@ def motion_options(silence: float) -> Callable[[Verb], Verb]:
         ),
     )
 
-    def give(verb: Verb) -> Verb:
-        @wraps(verb)
+    def give(subcommand: Subcommand) -> Subcommand:
+        @wraps(subcommand)
         def with_motion(
             *arguments: Any,
             allow_motion: bool,
@@ -91,9 +91,9 @@ def motion_options(silence: float) -> Callable[[Verb], Verb]:
             check_seconds("silence", silence)
             limits = Limits(speed=max_speed, workspace=workspace)
             motion = MotionOptions(allow_motion, limits, silence)
-            return verb(*arguments, motion=motion, **named)
+            return subcommand(*arguments, motion=motion, **named)
 
-        made: Verb = with_motion
+        made: Subcommand = with_motion
         for option in reversed(options):
             made = option(made)
         return made

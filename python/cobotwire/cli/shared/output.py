@@ -87,7 +87,7 @@ def plain_console() -> Console:
 
 
 def print_grid(grid: Grid) -> None:
-    """Print a grid; a file or a pipe gets its lines without the spaces at their ends."""
+    """Print a grid; into a file or a pipe without the spaces at the ends of lines."""
     console = plain_console()
     if console.is_terminal:
         console.print(grid)

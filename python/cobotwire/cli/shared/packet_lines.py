@@ -1,4 +1,4 @@
-"""Print the packets of a recording or of a line, for people and as JSON."""
+"""Format the packets of a recording or of a port, for people and as JSON."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from cobotwire.protocol.printable import printable
 
 
 def meaning_of(packet: Packet, codec: Codec) -> str:
-    """Return what a packet is, for people."""
+    """Return the meaning of a packet, for people."""
     if packet.kind == "noise":
         return f"noise ({printable(packet.reason)})"
     if packet.kind == "bytes" or packet.direction == "unknown":

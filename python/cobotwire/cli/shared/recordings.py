@@ -26,7 +26,7 @@ def notify(text: str) -> None:
 
 
 def open_recording(path: str) -> CaptureReader:
-    """Open a recording, or what another program recorded; say how the latter is read."""
+    """Open a recording; if another program made it, print how it is read."""
     # Imported here, because bytes in hex need nothing of it.
     from cobotwire.capture import read
 

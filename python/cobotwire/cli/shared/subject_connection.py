@@ -20,7 +20,7 @@ IN_MEMORY = "simulated arm in memory"
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """The device that the command line names, in one of three ways."""
+    """The device to test or survey: a port, a program, a simulated arm or a recording."""
 
     url: str | None = None
     command: str | None = None
@@ -52,7 +52,7 @@ NO_REPLY = "no reply: "
 class Lacking:
     """What a simulated arm declares as unsupported, such as coordinates of an unknown geometry.
 
-    ``reasons`` holds the commands with what the arm states.
+    ``reasons`` maps each of these commands to the reason that the arm states.
     """
 
     def __init__(self, table: Table) -> None:
@@ -75,7 +75,7 @@ STARTING = 10.0
 
 @contextmanager
 def connected(table: Table, subject: Subject, lacking: Lacking) -> Iterator[DeviceConnection]:
-    """Yield the connection with the device; a program that was started is stopped in the end.
+    """Yield the connection with the device; a program that was started is stopped at the end.
 
     Raises:
         UsageError: see :meth:`Subject.validate`.
