@@ -10,9 +10,9 @@ TESTED := --workspace --exclude cobotwire-native
 # The Python tests run in five lanes at once, which should end together. The first only computes. It
 # lets the others go first (nice), because they also have tests that wait for a reply until a
 # deadline. The last lane has all tests that no other lane names.
-COMPUTING := $(addprefix tests/,codec protocol spec)
+COMPUTING := $(addprefix tests/,codec codegen peers protocol spec targets)
 SIMULATING := $(addprefix tests/,conformance defects inspect simulator)
-CALLING := $(addprefix tests/,cli codegen docs newcomer peers)
+CALLING := $(addprefix tests/,cli docs newcomer)
 WAITING := $(addprefix tests/,attack client session transport diagnose mutation)
 NAMED := $(COMPUTING) $(SIMULATING) $(CALLING) $(WAITING)
 LANES := computing-tests simulating-tests calling-tests waiting-tests other-tests
@@ -56,9 +56,8 @@ lint: .venv/.tools .venv/.native ## check formatting, types, stubs against the b
 	$(BIN)/python -m mypy.stubtest cobotwire._native cobotwire.pymycobot.layer.classes --mypy-config-file pyproject.toml
 	cargo fmt --all --check
 	cargo fmt --manifest-path rust/fuzz/Cargo.toml --check
-# In these modes the dependencies are compiled anyway: release for the module, debug for the tests.
-	+cargo clippy --release --package cobotwire-native --lib --quiet -- -D warnings
-	+cargo clippy $(TESTED) --lib --bins --tests --quiet -- -D warnings
+# One run for all crates, so that their dependencies are checked once.
+	+cargo clippy --release --workspace --lib --bins --tests --quiet -- -D warnings
 	+if [ -d "$$(rustc --print target-libdir --target $(WASM))" ]; then $(CHECK_WASM) && $(CHECK_WASM) --no-default-features --features exchange; \
 		else echo "skipped: the check of the core for $(WASM), which is not installed" >&2; fi
 
