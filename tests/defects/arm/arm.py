@@ -102,7 +102,7 @@ class Arm:
                 break
             if taken:
                 self.requests += 1
-                sent += self.reply(taken[3], taken[4:-1])
+                sent += self.carry_out(taken)
             self.buffer = self.buffer[len(taken) or 1 :]
         return sent
 
@@ -122,6 +122,10 @@ class Arm:
             self.lose_state("footer")
             return b""
         return data[: size + 5]
+
+    def carry_out(self, frame: bytes) -> bytes:
+        """Return what is sent in reply to a whole request."""
+        return self.reply(frame[3], frame[4:-1])
 
     def lose_state(self, why: str) -> None:
         """Do nothing: only a planted defect loses state when malformed bytes come."""
