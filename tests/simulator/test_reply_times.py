@@ -18,6 +18,7 @@ from cobotwire.editions import load, names
 from cobotwire.kinematics import Geometry, coords_of, flange, geometry_of, nearest
 from cobotwire.kinematics.closed_form import is_solved
 from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.limits import joint_limits
 from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator import PtyServer, SimulatedArm
 from simulator.bench import Bench
@@ -33,13 +34,6 @@ MOST_CALLS = 75_000
 ROUND = (0.0, 0.0, 0.0, 10.0, -20.0, 90.0, -90.0)
 
 
-def _limits(table: Table) -> list[tuple[float, float]]:
-    numbers = table.in_role("joint targets").request[0].fields[0].cases[0].numbers
-    return [
-        (max(n.physical(n.minimum), -165.0), min(n.physical(n.maximum), 165.0)) for n in numbers
-    ]
-
-
 def _pose(chance: random.Random, limits: list[tuple[float, float]]) -> tuple[float, ...]:
     """Draw angles; often a straight elbow or wrist, where a pose has no or many solutions."""
     if chance.random() < 0.4:
@@ -51,7 +45,7 @@ def _target(chance: random.Random, table: Table) -> tuple[float, ...]:
     """Draw coordinates: reachable, at the edge of the reach, or nearly anywhere."""
     geometry = geometry_of(table)
     assert geometry is not None
-    x, y, z, *turns = coords_of(geometry, _pose(chance, _limits(table)))
+    x, y, z, *turns = coords_of(geometry, _pose(chance, joint_limits(table)))
     share = chance.choice((1.0, 0.999, 1.002, chance.uniform(0.2, 1.3)))
     return tuple(round(value, 2) for value in (x * share, y * share, z * share, *turns))
 
@@ -61,7 +55,7 @@ def _requests(table: Table, count: int) -> Iterator[tuple[tuple[float, ...], Com
     chance = random.Random(320)
     commands = [command for command in table.commands if command.name in SOLVING]
     for _ in range(count):
-        start, target = _pose(chance, _limits(table)), _target(chance, table)
+        start, target = _pose(chance, joint_limits(table)), _target(chance, table)
         command, axis = chance.choice(commands), chance.randint(1, 6)
         values = {"coords": target, "axis": axis, "coord": target[axis - 1], "angles": start}
         values |= {"direction": chance.randint(0, 1), "increment": chance.uniform(-200, 200)}
@@ -91,7 +85,7 @@ def test_work_for_a_reply_is_bounded_for_every_target(edition: str) -> None:
 @pytest.mark.parametrize("edition", WITH_GEOMETRY)
 def test_pose_of_any_angles_is_found_by_the_shipped_arms(edition: str) -> None:
     table = load(edition).TABLE
-    geometry, limits, chance = geometry_of(table), _limits(table), random.Random(9)
+    geometry, limits, chance = geometry_of(table), joint_limits(table), random.Random(9)
     assert geometry is not None
     assert is_solved(geometry)
     for _ in range(100):

@@ -18,6 +18,7 @@ from cobotwire.editions import load, names
 from cobotwire.editions.mycobot280.messages import SolveInvKinematics, SolveInvKinematicsReply
 from cobotwire.kinematics import Pose, flange, geometry_of, nearest
 from cobotwire.kinematics.closed_form import solutions
+from cobotwire.protocol.limits import joint_limits
 from cobotwire.protocol.table import Table
 from cobotwire.simulator import SimulatedArm
 from cobotwire.simulator.behaviour import Behaviour
@@ -43,13 +44,6 @@ STRAIGHT: list[Row] = [
 BENT: list[Row] = [(20, 40, -60, 10, 50, 30), (-90, -20, 50, -20, 60, 10)]
 
 
-def _limits(table: Table) -> list[tuple[float, float]]:
-    numbers = table.in_role("joint targets").request[0].fields[0].cases[0].numbers
-    return [
-        (max(n.physical(n.minimum), -165.0), min(n.physical(n.maximum), 165.0)) for n in numbers
-    ]
-
-
 def _poses(table: Table, count: int) -> Iterator[Row]:
     """Draw start poses: often with a straight elbow or wrist, or at a limit; nearly or exactly."""
     chance = random.Random(3)
@@ -59,7 +53,7 @@ def _poses(table: Table, count: int) -> Iterator[Row]:
             min(max(chance.choice((*ROUND, low, high)) + chance.uniform(-near, near), low), high)
             if chance.random() < 0.8
             else chance.uniform(low, high)
-            for low, high in _limits(table)
+            for low, high in joint_limits(table)
         )
 
 

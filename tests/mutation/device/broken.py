@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import heapq
 from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
@@ -14,6 +13,8 @@ from cobotwire.session.device import DeviceEvent
 from cobotwire.simulator.arm import SimulatedArm
 from cobotwire.simulator.arm_connection import ArmConnection
 from cobotwire.simulator.clock import Clock
+from cobotwire.simulator.faults.exchange import Piece
+from cobotwire.simulator.faults.outlet import Outlet
 from mutation.device.cells import Stimulus, kind_of
 
 
@@ -95,9 +96,8 @@ class BrokenArm(ArmConnection):
         self._correct = SimulatedArm(table, clock=clock)
         super().__init__(self._correct, None)
         self._fault = fault
-        # The bytes that are sent later: the time, the number, and the bytes.
-        self._late: list[tuple[float, int, bytes]] = []
-        self._count = 0
+        # The bytes that are sent later.
+        self._late = Outlet()
         # Whether the arm did not receive the last request, so that its text is lost, too.
         self._lost = False
 
@@ -105,19 +105,19 @@ class BrokenArm(ArmConnection):
     def wait(self) -> float | None:
         """Seconds until :meth:`flush` must be called if nothing is received; None: never."""
         wait = super().wait
-        if not self._late:
+        if self._late.next is None:
             return wait
-        left = max(0.0, self._late[0][0] - self._arm.clock())
+        left = max(0.0, self._late.next - self._arm.clock())
         return left if wait is None else min(wait, left)
 
     def receive(self, data: bytes) -> bytes:
         """Take ``data``; return what is sent at once."""
         self._fault.chunk(data)
-        return self._take_late() + super().receive(data)
+        return self._late.take(self._arm.clock()) + super().receive(data)
 
     def flush(self) -> bytes:
         """Let time pass; return what is due by now."""
-        late = self._take_late()
+        late = self._late.take(self._arm.clock())
         if self._arm.clock() < self._idle_at:
             return late + self.take_events()
         return late + super().flush()
@@ -150,8 +150,8 @@ class BrokenArm(ArmConnection):
         for delay, part in [TimedBytes(0.0, parts)] if isinstance(parts, bytes) else parts:
             if delay <= 0:
                 sent += part
-            else:
-                self._send_later(delay, part)
+            elif part:
+                self._late.put(self._arm.clock() + delay, (Piece(0.0, part),))
         return sent
 
     def _read_again(self, received: RequestReceived, changed: bytes) -> list[DeviceEvent]:
@@ -167,14 +167,3 @@ class BrokenArm(ArmConnection):
             # The arm sends its acknowledgement to a connection that is never read.
             self._correct.receive(request)
         return self._fault.malformed(self._arm.table, kind, data)
-
-    def _send_later(self, delay: float, data: bytes) -> None:
-        if data:
-            self._count += 1
-            heapq.heappush(self._late, (self._arm.clock() + delay, self._count, data))
-
-    def _take_late(self) -> bytes:
-        sent = b""
-        while self._late and self._late[0][0] <= self._arm.clock():
-            sent += heapq.heappop(self._late)[2]
-        return sent
