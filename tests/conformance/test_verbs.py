@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
 import sys
 from pathlib import Path
 
@@ -14,32 +13,16 @@ import vectors
 from cobotwire.cli.app import app
 from cobotwire.conformance.reports import from_json
 from cobotwire.editions.mycobot280 import MyCobot280
+from command_line import printed, run_program, started
 from in_process import Ended
 
-VERB = [sys.executable, "-c", "from cobotwire.cli import main; main()"]
-CONFORM = [*VERB, "--edition", "mycobot280", "conform"]
+CLIENT = ("--edition", "mycobot280", "conform", "client")
 ADAPTER = [sys.executable, "-m", "cobotwire.conformance.codec.adapter"]
 
 
 def _run(*words: str, edition: str = "mycobot280") -> Ended:
     words = ("--edition", edition, "conform", *words)
     return in_process.run(app, "cobotwire", *words, folder=vectors.ROOT)
-
-
-class _Listening:
-    """``conform client`` as a process; ``url`` is its first line."""
-
-    def __init__(self, *words: str) -> None:
-        self._process = subprocess.Popen(
-            [*CONFORM, "client", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-        )
-        assert self._process.stdout is not None
-        self.url = self._process.stdout.readline().strip()
-
-    def end(self) -> tuple[int, str]:
-        """Wait for the end; return the exit code, and the output after the first line."""
-        output, _ = self._process.communicate(timeout=60)
-        return self._process.returncode, output
 
 
 # The calls of a script, the exit code, and what the output names.
@@ -62,12 +45,12 @@ def test_client_is_compared_with_its_script(
     file, script = tmp_path / "report.json", tmp_path / "calls.txt"
     script.write_text(calls)
     words = ("--expect", str(script), "--idle", "1", "--json", str(file))
-    referee = _Listening("--listen", listen, *words)
-    with MyCobot280(referee.url) as arm:
-        assert arm.get_angles() is not None
-        arm.send_angle(1, 2.55, 50)
-    code, output = referee.end()
-    assert (code, word in output) == (expected, True), output
+    with started(*CLIENT, "--listen", listen, *words) as tester:
+        with MyCobot280(printed(tester).strip()) as arm:
+            assert arm.get_angles() is not None
+            arm.send_angle(1, 2.55, 50)
+        output, _ = tester.communicate(timeout=60)
+    assert (tester.returncode, word in output) == (expected, True), output
     report = from_json(file.read_text())
     assert (report.kind, report.conforms) == ("client", expected == 0)
 
@@ -212,8 +195,7 @@ def test_client_that_is_started_ends_the_run_when_it_ends(code: int, tmp_path: P
         f"with MyCobot280(sys.argv[1]) as arm:\n    arm.get_angles()\nsys.exit({code})\n"
     )
     command = f"{sys.executable} {script} {{port}}"
-    words = [*CONFORM, "client", "--command", command, "--json", str(file)]
-    done = subprocess.run(words, capture_output=True, text=True, check=False, timeout=120)
+    done = run_program(*CLIENT, "--command", command, "--json", file)
     report = from_json(file.read_text())
     assert report.failures == []
     assert report.finished is (code == 0)

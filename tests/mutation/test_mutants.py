@@ -24,8 +24,11 @@ KINDS = {
     *("stored wrong", "wrong part", "wrong ack", "malformed input", "state lost", "stale reply"),
 }
 # The test cases of one command kill these, so a run takes milliseconds.
-QUICK = ("header", "LEN", "no reply")
+QUICK = {"header", "LEN", "no reply"}
 FRAMING = {"LEN", "id", "footer", "check", "header", "address"}
+# An edition of unknown geometry; one with a check value, events and fields of bytes; one with
+# addresses.
+FORMATS = {"mypalletizer260", "mercury_a1", "mybuddy"}
 # For each suite: the least number of mutants it must have, and how many of each kind are run.
 SAMPLES = {
     Key("device", "mycobot280"): (2000, 1),
@@ -72,17 +75,23 @@ def test_correct_subject_passes(key: Key) -> None:
         assert suite.failure(name) == ""
 
 
-@pytest.mark.parametrize(
-    "edition", [e for e in sampled_editions() if Key("device", e) not in SAMPLES]
-)
+OTHERS = {*FORMATS, *sampled_editions()} - {
+    key.edition for key in SAMPLES if key.tester == "device"
+}
+
+
+@pytest.mark.parametrize("edition", sorted(OTHERS))
 def test_broken_device_of_each_other_edition_is_found(edition: str) -> None:
     suite = made(Key("device", edition))
+    kinds = QUICK | (FRAMING if edition in FORMATS else set())
     # Each edition gets other commands.
     seed = Random(edition).randrange(1 << 32)
-    chosen = [id for id in sampled(suite, 1, seed) if suite.mutants[id].kind in QUICK]
+    chosen = [id for id in sampled(suite, 1, seed) if suite.mutants[id].kind in kinds]
     outcomes = [suite.outcome(id) for id in chosen]
-    assert len(outcomes) == len(QUICK)
-    assert [outcome for outcome in outcomes if not outcome.killed_by] == []
+    killed = {outcome.kind for outcome in outcomes if outcome.killed_by}
+    assert missed(outcomes) == []
+    assert killed >= QUICK
+    assert len(killed) > len(outcomes) / 2
 
 
 @pytest.mark.parametrize("after", STIMULI)
@@ -108,17 +117,6 @@ def test_setting_that_is_lost_after_malformed_bytes_is_named(after: str) -> None
 def test_wrong_part_of_what_a_command_sets_is_named(mutant: str, killer: str) -> None:
     outcome = made(Key("device", "mercury_a1")).outcome(mutant)
     assert outcome.killed_by.startswith(killer)
-
-
-# An edition of unknown geometry; one with a check value, events and fields of bytes; one with
-# addresses.
-@pytest.mark.parametrize("edition", ["mypalletizer260", "mercury_a1", "mybuddy"])
-def test_wrong_frame_of_another_edition_is_killed_or_excused(edition: str) -> None:
-    suite = made(Key("device", edition))
-    chosen = [id for id in sampled(suite, 1, seed=7) if suite.mutants[id].kind in FRAMING]
-    outcomes = [suite.outcome(id) for id in chosen]
-    assert missed(outcomes) == []
-    assert sum(bool(outcome.killed_by) for outcome in outcomes) > len(outcomes) / 2
 
 
 # An edition with several devices; one with events between replies, also together with late replies.

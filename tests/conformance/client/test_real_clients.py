@@ -24,39 +24,23 @@ def report_on_time(client: str, line: Line) -> tuple[Report, list[str]]:
     return unstalled(partial(checked, client, line), ALLOWED_STALL, PtyMeter)
 
 
-OURS = ["cobotwire", "cobotwire tcp", "cobotwire asyncio", "cobotwire asyncio tcp"]
-# bench/client_findings.py runs them on every line.
-RUST = [("cobotwire rust", "merged"), ("cobotwire rust async tcp", "noise")]
+OURS = ("cobotwire", "cobotwire tcp", "cobotwire asyncio", "cobotwire asyncio tcp")
+NODE = pytest.mark.skipif(bool(npm_package.missing()), reason=npm_package.missing())
+# bench/client_findings.py runs every client on every line.
+RUNS = [
+    *((client, line) for client in OURS for line in ("good", "no-acks")),
+    *(("cobotwire", line) for line in ("lost", "late", "merged", "noise", "split")),
+    pytest.param("cobotwire rust", "merged", marks=probe.needed),
+    pytest.param("cobotwire rust async tcp", "noise", marks=probe.needed),
+    *(pytest.param("cobotwire node tcp", line, marks=NODE) for line in ("good", "merged", "noise")),
+]
 
 
-@pytest.mark.parametrize("client", OURS)
-@pytest.mark.parametrize("line", ["good", "no-acks"])
-def test_our_client_passes_on_a_good_line(client: str, line: str) -> None:
+@pytest.mark.parametrize(("client", "line"), RUNS)
+def test_our_client_passes_on_good_and_bad_lines(client: str, line: str) -> None:
+    if "node" in client:
+        package()
     report, failures = report_on_time(client, LINES[line])
-    assert report.failures == []
-    assert (report.conforms, failures) == (True, [])
-
-
-@pytest.mark.parametrize("line", ["lost", "late", "merged", "noise", "split"])
-def test_our_client_passes_on_a_bad_line(line: str) -> None:
-    report, failures = report_on_time("cobotwire", LINES[line])
-    assert report.failures == []
-    assert (report.conforms, failures) == (True, [])
-
-
-@probe.needed
-@pytest.mark.parametrize(("client", "line"), RUST)
-def test_rust_client_passes(client: str, line: str) -> None:
-    report, failures = report_on_time(client, LINES[line])
-    assert report.failures == []
-    assert (report.conforms, failures) == (True, [])
-
-
-@pytest.mark.skipif(bool(npm_package.missing()), reason=npm_package.missing())
-@pytest.mark.parametrize("line", ["good", "merged", "noise"])
-def test_client_in_node_passes(line: str) -> None:
-    package()
-    report, failures = report_on_time("cobotwire node tcp", LINES[line])
     assert report.failures == []
     assert (report.conforms, failures) == (True, [])
 

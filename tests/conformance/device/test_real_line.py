@@ -20,11 +20,11 @@ from cobotwire.conformance.device import DeviceConnection, Permissions, Tester
 from cobotwire.conformance.reports import from_json
 from cobotwire.simulator import PtyServer, SimulatedArm
 from cobotwire.transport import open_transport
+from command_line import started
 from conformance.device.testing import prepared
 
 TABLE = editions.load("mycobot280").TABLE
-VERB = [sys.executable, "-c", "from cobotwire.cli import main; main()"]
-WORDS = [*VERB, "--edition", "mycobot280", "conform", "device"]
+WORDS = ("--edition", "mycobot280", "conform", "device")
 PLUGIN = ["-p", "cobotwire.conformance.pytest_plugin"]
 INSTALLED = any(point.name == "cobotwire_conform" for point in entry_points(group="pytest11"))
 
@@ -50,8 +50,7 @@ def test_ctrl_c_stops_the_arm_restores_settings_and_writes_a_report(tmp_path: Pa
     options = ["--allow", "motion,power,persistent-write", "--max-speed", "1"]
     options += ["--workspace", "-60:60", "--json", str(file)]
     limits = list(arm.state.minimum), list(arm.state.maximum)
-    with PtyServer(arm) as server:
-        run = subprocess.Popen([*WORDS, server.url, *options], stderr=subprocess.PIPE, text=True)
+    with PtyServer(arm) as server, started(*WORDS, server.url, *options) as run:
         until = time.monotonic() + 60
         while not arm.state.angles.moving(time.monotonic()) and time.monotonic() < until:
             time.sleep(0.05)

@@ -22,21 +22,23 @@ from cobotwire.conformance.device import (
 )
 from cobotwire.conformance.reports import from_json
 from cobotwire.protocol.errors import LinkError, UsageError
+from command_line import PROGRAM as COMMAND_LINE
 
 # A busy machine may need long to start a program, in seconds.
 STARTING = 60.0
 TABLE = editions.load("mycobot280").TABLE
 PROGRAM = [sys.executable, str(Path(__file__).with_name("device_program.py"))]
 SERVED = [
-    *(sys.executable, "-c", "from cobotwire.cli import main; main()"),
+    *COMMAND_LINE,
     *("--edition", "mycobot280", "sim", "--quiet"),
 ]
-# How a program is connected, and its command.
-CONNECTIONS = {
-    "standard input and output": [*PROGRAM, "stdio"],
-    "pseudo-terminal by its path": [*PROGRAM, "{port}"],
-    "printed port": SERVED,
-    "printed URL": [*SERVED, "--tcp", ":0"],
+# How a program is connected: its command, and the option --attach.
+CONNECTIONS: dict[str, tuple[list[str], str | None]] = {
+    "standard input and output": ([*PROGRAM, "stdio"], None),
+    "pseudo-terminal as standard input": ([*PROGRAM, "stdio"], "pty"),
+    "pseudo-terminal by its path": ([*PROGRAM, "{port}"], None),
+    "printed port": (SERVED, "port"),
+    "printed URL": ([*SERVED, "--tcp", ":0"], "port"),
 }
 
 
@@ -46,9 +48,8 @@ def first_queries(tester: Tester) -> list[Step]:
 
 @pytest.mark.parametrize("connection", CONNECTIONS)
 def test_started_program_is_tested_and_stopped(connection: str) -> None:
-    command, attach = parse_command(
-        shlex.join(CONNECTIONS[connection]), "port" if connection.startswith("printed") else None
-    )
+    words, attachment = CONNECTIONS[connection]
+    command, attach = parse_command(shlex.join(words), attachment)
     with StartedDevice(command, attach, TABLE.baudrate) as started:
         tester = Tester(DeviceConnection(started.transport), TABLE)
         assert tester.device.await_start(STARTING)
@@ -58,13 +59,6 @@ def test_started_program_is_tested_and_stopped(connection: str) -> None:
         assert started.ended() == ""
     assert started.ended()
     assert tester.report.subject.startswith("command ")
-
-
-def test_pseudo_terminal_can_be_the_standard_input_of_a_program() -> None:
-    with StartedDevice([*PROGRAM, "stdio"], "pty", TABLE.baudrate) as started:
-        tester = Tester(DeviceConnection(started.transport), TABLE)
-        assert tester.device.await_start(STARTING)
-        assert {r.verdict for r in tester.results(first_queries(tester)[0])} == {Verdict.PASS}
 
 
 @pytest.mark.parametrize("how", ["stdio", "{port}"])

@@ -4,48 +4,38 @@ from __future__ import annotations
 
 import pytest
 
+from cobotwire.editions.mycobot280 import TABLE
+from cobotwire.simulator import SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
 from cobotwire.simulator.faults import (
     AppliedFault,
     CommandError,
     Echo,
     Fault,
+    Late,
     Scenario,
     Silent,
     Stalled,
 )
+from cobotwire.simulator.peer import Peer
 from faulty_talk import CODEC, IS_POWERED, OFF, talk
 from playing import play
 
 TEXT = b"cmd_len error\r\n"
 ACCOUNT = bytes.fromhex("FE FE 02 B0 FA"), b"home(secret)"
-ANSWERS_AFTER = 0.5
+REPLIES_AFTER = 0.5
 
 
-class Slow:
-    """A peer that replies to each request late."""
-
-    def __init__(self, clock: SteppedClock) -> None:
-        self._clock = clock
-        self._due: float | None = None
-
-    @property
-    def wait(self) -> float | None:
-        return None if self._due is None else max(0.0, self._due - self._clock())
-
-    def receive(self, data: bytes) -> bytes:
-        self._due = self._clock() + ANSWERS_AFTER
-        return b""
-
-    def flush(self) -> bytes:
-        self._due = None
-        return OFF
+def slow_arm(clock: SteppedClock) -> Peer:
+    """Return an arm that replies to each request late."""
+    scenario = Scenario(name="slow", faults=(Late(seconds=REPLIES_AFTER),))
+    return scenario.wrap(SimulatedArm(TABLE, clock=clock), CODEC, clock=clock)
 
 
 def received_from_slow(*faults: Fault) -> tuple[list[tuple[float, bytes]], list[AppliedFault]]:
     clock, applied = SteppedClock(), list[AppliedFault]()
     scenario = Scenario(name="test", faults=faults)
-    peer = scenario.wrap(Slow(clock), CODEC, clock=clock, on_fault=applied.append)
+    peer = scenario.wrap(slow_arm(clock), CODEC, clock=clock, on_fault=applied.append)
     return play(peer, clock, [(0.0, IS_POWERED), (10.0, b"")]), applied
 
 
@@ -85,6 +75,6 @@ def test_fault_of_a_request_is_not_applied_to_a_late_reply_again(
 def test_silent_arm_loses_its_late_reply() -> None:
     clock, applied = SteppedClock(), list[AppliedFault]()
     scenario = Scenario(name="test", faults=(Silent(nth=(2,), seconds=1),))
-    peer = scenario.wrap(Slow(clock), CODEC, clock=clock, on_fault=applied.append)
+    peer = scenario.wrap(slow_arm(clock), CODEC, clock=clock, on_fault=applied.append)
     assert play(peer, clock, [(0.0, IS_POWERED), (0.2, IS_POWERED), (5.0, b"")]) == []
     assert [(one.fault, one.added) for one in applied] == [("silent", 0), ("deaf", -len(OFF))]
