@@ -1,11 +1,11 @@
-"""The simulated arm of every edition conforms: in stepped time, on a pseudo-terminal, over TCP.
+"""The simulated arm of every edition conforms, in stepped time.
 
-``tests/editions`` calls every command of every edition on real lines.
+``tests/editions`` calls every command of every edition on real lines; ``test_started.py`` and
+``test_real_line.py`` test devices on them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -13,10 +13,9 @@ import pytest
 from cobotwire import editions
 from cobotwire.cli.shared.subject_connection import Lacking
 from cobotwire.conformance import Verdict
-from cobotwire.conformance.device import DeviceConnection, Step, Tester
-from cobotwire.simulator import PtyServer, Server, SimulatedArm, TcpServer
+from cobotwire.conformance.device import Tester
+from cobotwire.simulator import SimulatedArm
 from cobotwire.simulator.clock import SteppedClock
-from cobotwire.transport import open_transport
 from conformance.device.testing import on_peer, results_of
 from vectors import sampled
 
@@ -63,31 +62,3 @@ def test_silence_of_a_query_fails_once_and_option_excuses_it(edition: str) -> No
 def test_single_limb_of_a_robot_with_three_conforms(address: str) -> None:
     report = _tester("mybuddy", address=address).run()
     assert [(r.case, r.command, r.reason) for r in report.failures] == []
-
-
-SERVERS: dict[str, Callable[[SimulatedArm], Server]] = {
-    "mercury_a1": PtyServer,
-    "mybuddy": lambda arm: TcpServer(lambda: arm),
-}
-
-
-@pytest.mark.parametrize("edition", SERVERS)
-def test_real_line_to_an_edition_has_replies(edition: str) -> None:
-    table = editions.load(edition).TABLE
-    with SERVERS[edition](SimulatedArm(table)) as server:
-        transport = open_transport(server.url, table.baudrate)
-        try:
-            # A busy machine may delay a reply.
-            tester = Tester(DeviceConnection(transport), table, retries=3)
-            for step in _short(tester):
-                for result in tester.results(step):
-                    assert result.verdict is Verdict.PASS, (result.case, result.reason)
-        finally:
-            transport.close()
-
-
-def _short(tester: Tester) -> list[Step]:
-    """Return the queries of the joints and whether they move."""
-    roles = ("joints", "moving", "version")
-    steps = (step for step in tester.steps() if step.group.name == "queries")
-    return [step for step in steps if step.command and step.command.role in roles]
