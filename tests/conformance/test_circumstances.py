@@ -80,7 +80,9 @@ def test_report_states_tester_serial_number_clocks_and_load(tmp_path: Path) -> N
     assert (timed[0].load > 0) == (host.load() > 0)
 
 
-def test_load_is_shown_only_with_verdicts_on_time(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_load_is_shown_only_with_verdicts_that_depend_on_time(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr("cobotwire.conformance.tally.load", lambda: 1.5)
     tally, timed, other = Tally(), TestCase("a", "", timed=True), TestCase("b", "")
     for case in (timed, other):
@@ -94,7 +96,7 @@ def test_load_is_shown_only_with_verdicts_on_time(monkeypatch: pytest.MonkeyPatc
 @pytest.mark.parametrize(
     ("wall", "mistake"), [(10.0, False), (10.1, False), (9.8, True), (3610.0, True)]
 )
-def test_clock_that_was_set_during_the_run_is_named(wall: float, mistake: bool) -> None:
+def test_report_names_a_clock_that_was_set_during_the_run(wall: float, mistake: bool) -> None:
     found = Host(10.0, wall)
     assert bool(host.clock_mistake(found)) is mistake
     report = Report("device", "mycobot", "arm", host=found)

@@ -1,4 +1,4 @@
-"""Samples hold the ends of every range, and are legal or illegal as their names say."""
+"""Samples contain both limits of every range, and are legal or illegal as their names say."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _is_legal(variant: Variant, raw_values: RawValues) -> bool:
 
 
 @pytest.mark.parametrize("edition", editions.names())
-def test_samples_are_legal_and_hold_the_ends_or_the_list_of_each_number(edition: str) -> None:
+def test_samples_are_legal_and_contain_both_limits_or_every_choice(edition: str) -> None:
     for variant in _variants(editions.load(edition).TABLE):
         found = [sample.raw_values for sample in samples(variant)]
         assert all(_is_legal(variant, each) for each in found)
@@ -51,7 +51,7 @@ def test_illegal_samples_are_illegal(edition: str) -> None:
 
 
 @pytest.mark.parametrize("edition", editions.names())
-def test_harmless_values_are_legal_and_hold_the_ends_or_the_list_of_each_number(
+def test_harmless_values_are_legal_and_contain_both_limits_or_every_choice(
     edition: str,
 ) -> None:
     for variant in _variants(editions.load(edition).TABLE):

@@ -70,7 +70,7 @@ def failed(report: Report) -> set[str]:
     return {result.case for result in report.failures}
 
 
-def test_our_asyncio_client_delivers_the_replies_too(bus: Any) -> None:
+def test_our_asyncio_client_delivers_replies_that_follow_other_messages(bus: Any) -> None:
     referee = Referee(bus.TABLE, scenario=faulty_replies(0.008, OTHERS, 1))
 
     async def calls(url: str) -> list[int]:

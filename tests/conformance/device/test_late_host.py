@@ -1,4 +1,4 @@
-"""Stalls of the host fail no device. The clock is stepped, so load does not matter.
+"""A device does not fail because the host stalls. The clock is stepped, so load does not matter.
 
 A stall is a pause of the host between a request and the next read of the port.
 """
@@ -44,13 +44,13 @@ ARMS = ["", "acknowledges-late", "fast"]
 
 
 @pytest.mark.parametrize(("arm", "stall"), vectors.sampled_pairs(ARMS, STALLS))
-def test_stalls_of_the_host_fail_no_device(arm: str, stall: tuple[int, float]) -> None:
+def test_device_does_not_fail_because_the_host_stalls(arm: str, stall: tuple[int, float]) -> None:
     every, seconds = stall
     report = run(arm, every, seconds)
     assert [f"{r.group}, {r.case} {r.command}: {r.reason}" for r in report.failures] == []
 
 
-def test_host_that_is_always_late_gives_no_verdict_on_requests_in_pieces() -> None:
+def test_requests_in_pieces_get_no_verdict_if_the_host_is_always_late() -> None:
     report = run("", 2, 0.3)
     found = [result for result in report.results if result.case == "request-in-pieces"]
     assert {result.cause for result in found} == {Cause.NOT_TIMED}
@@ -64,7 +64,7 @@ def test_report_shows_the_pauses_that_were_made() -> None:
     assert "12 to 12 ms" in found[0].reason
 
 
-def test_case_moving_is_not_timed_on_an_arm_that_arrives_at_once() -> None:
+def test_verdict_of_moving_is_not_timed_if_the_arm_arrives_at_once() -> None:
     report = run("very-fast", 1, 0.02)
     found = {r.command: r for r in report.results if r.case == "moving"}
     assert found["send_angles"].outcome == "inconclusive (not timed)"

@@ -128,7 +128,7 @@ def test_survey_of_an_arm_that_falls_silent_ends_and_keeps_what_it_found() -> No
     assert survey.facts.with_verdict("confirmed")
 
 
-def test_replies_that_name_a_device_are_hidden_and_no_evidence() -> None:
+def test_replies_that_identify_a_device_are_hashed_and_not_kept_as_evidence() -> None:
     def renamed(command: Command) -> Command:
         [variant] = command.reply
         fields = tuple(field._replace(name="serial") for field in variant.fields)
@@ -171,7 +171,7 @@ def test_query_without_replies_at_one_address_contradicts_no_effect() -> None:
     assert survey.contradicted == []
 
 
-def test_default_address_without_replies_is_refused_with_the_option_to_choose_another() -> None:
+def test_refusal_of_a_default_address_without_replies_names_the_option() -> None:
     table = editions.load("mybuddy").TABLE
     silent = table.addresses[0]._replace(replies="none")
     with pytest.raises(UsageError, match=r"'ALL'; allowed: .* \(--address\)"):

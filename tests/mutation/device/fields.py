@@ -29,7 +29,7 @@ class Alteration(NamedTuple):
     def in_reply(self, wanted: Field, table: Table, request: DecodedMessage, data: bytes) -> bytes:
         """Return a reply with a field altered, in a correct frame.
 
-        The text in which an arm states that it lacks the reply has no fields.
+        Other text, such as the reason why the simulated arm cannot reply, is returned unchanged.
         """
         if not data.startswith(table.frame.header):
             return data

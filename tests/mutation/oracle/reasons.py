@@ -58,8 +58,9 @@ def _alike(table: Table, mutant: Mutant, had: Sequence[Conversation]) -> str:
     return f"{same}, because {why}" if why else same
 
 
-# What the edition leaves undefined, by the unit or the labels of a request's field.
+# The unit of a speed, of which the edition does not define 100 percent.
 SHARE = "percent"
+# A label of a direction, of which the edition does not define the sign.
 TURNS = "CLOCKWISE"
 
 
@@ -126,7 +127,7 @@ def _reported(table: Table, name: str, field: Field) -> bool:
     """Return whether another command sets or reports the value of the field."""
     command = table.command(name)
     setters = [c for c in table.commands if c.read_by is not None and c.read_by.query == name]
-    # A fixed effect reveals only one value.
+    # A command with a constant effect shows only one value, so it does not count.
     if any(
         all(isinstance(value, str) for _, value in c.read_by.fields) for c in setters if c.read_by
     ):
