@@ -8,10 +8,13 @@ import sys
 
 import pytest
 
+from cobotwire.conformance import Report
 from defects.arm import closed_loop, two_arms
 from defects.arm.planted import DEFECTS
+from defects.clients import report_on_client
+from defects.devices import report_on_firmware, report_on_peer
 from defects.key import HERE, Defect, Message, defects, messages_of, naming
-from defects.running import CORRECT, report_on
+from defects.makers_server import report_on_server
 
 EVERY = "EVERY_DEFECT" in os.environ
 KEY = list(defects())
@@ -29,6 +32,17 @@ SAMPLE = {
     "two_arms": tuple(two_arms.DEFECTS),
     "client": ("truncates", "takes-text-for-the-reply", "moves-after-release"),
 }
+LINES = ("", "lost", "late", "noise", "text", "split", "twice", "merged")
+# The lines or variants with which each subject without a defect must conform. The maker's server
+# is left out: it has defects of its own.
+CORRECT = {
+    "arm": ("",),
+    "closed_loop": tuple(closed_loop.CORRECT),
+    "two_arms": ("",),
+    "firmware": ("",),
+    "client": LINES,
+    "c_client": LINES,
+}
 # Correct subjects with varying delays, fast motions, or bytes between frames; and bad lines.
 WAYS = ("", "acknowledges-at-different-times", "very-fast", "nul-now-and-then", "text", "late")
 RUN = [defect for defect in KEY if EVERY or defect.switch in SAMPLE.get(defect.subject, ())]
@@ -38,6 +52,21 @@ RIGHT = [
     for line in lines
     if EVERY or (subject in SAMPLE and line in WAYS)
 ]
+
+
+def report_on(subject: str, defect: str = "", line: str = "") -> Report:
+    """Test a subject with a defect.
+
+    For a client, ``line`` names the fault of the referee's replies. For an arm in a closed loop
+    without a defect it names the correct variant.
+    """
+    if subject in ("client", "c_client"):
+        return report_on_client(subject, defect, line)
+    if subject == "firmware":
+        return report_on_firmware(defect)
+    if subject == "server":
+        return report_on_server(defect)
+    return report_on_peer(subject, defect or line)
 
 
 @pytest.mark.parametrize("defect", RUN, ids=lambda each: f"{each.subject}-{each.switch}")

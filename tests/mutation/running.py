@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from cobotwire import editions
 from cobotwire.protocol.table import Table
-from mutation.client.suite import ClientSuite, ScriptlessSuite
+from mutation.client.suite import ClientSuite
 from mutation.codec.suite import CodecSuite
 from mutation.device.suite import DeviceSuite
 from mutation.suite import Outcome, Suite
@@ -18,7 +18,7 @@ from mutation.suite import Outcome, Suite
 TESTERS: dict[str, Callable[[Table], Suite]] = {
     "device": DeviceSuite,
     "client with a script": ClientSuite,
-    "client without a script": ScriptlessSuite,
+    "client without a script": partial(ClientSuite, with_script=False),
     "codec": CodecSuite,
 }
 # Without a script, the referee checks only whether requests are legal: one edition is enough.

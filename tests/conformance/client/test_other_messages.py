@@ -12,11 +12,11 @@ from cobotwire import MyBuddy
 from cobotwire import codec as codecs
 from cobotwire.cli.conform_client import read_script
 from cobotwire.conformance.client import FAULTS, Referee, faulty_replies, possible_faults
-from cobotwire.conformance.report import Report
 from cobotwire.editions import mybuddy
 from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.protocol.errors import UsageError
 from cobotwire.simulator import MemoryTransport, PtyServer, SteppedClock
+from conformance.client.test_cases import failed
 from trial_specs import HEAD, package_of
 
 BUS = f"""
@@ -64,10 +64,6 @@ OTHERS = ["event", "address"]
 def bus(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     with package_of(BUS, tmp_path_factory.mktemp("bus")) as package:
         yield package
-
-
-def failed(report: Report) -> set[str]:
-    return {result.case for result in report.failures}
 
 
 def test_our_asyncio_client_delivers_replies_that_follow_other_messages(bus: Any) -> None:

@@ -28,7 +28,10 @@ RUNS = 20
 
 
 class ClientSuite(Suite):
-    """Broken clients, and a correct one on good lines and with each fault."""
+    """Broken clients, and a correct one on good lines and with each fault.
+
+    Without a script, the referee checks only whether requests are legal.
+    """
 
     def __init__(self, table: Table, *, with_script: bool = True) -> None:
         super().__init__(table, client_mutants(table))
@@ -96,13 +99,6 @@ class ClientSuite(Suite):
         play(referee, clock, [*writes, Sent(PAUSE, b"")])
         report = referee.finish()
         return next((f"{result.case}: {result.reason}" for result in report.failures), "")
-
-
-class ScriptlessSuite(ClientSuite):
-    """The same clients; the referee checks only whether requests are legal."""
-
-    def __init__(self, table: Table) -> None:
-        super().__init__(table, with_script=False)
 
 
 def client_mutants(table: Table) -> Iterator[ClientMutant]:
