@@ -19,8 +19,8 @@ from codegen.author import samples
 
 SOURCES = vectors.ROOT / "codegen/src/cobotwire_codegen"
 EXPLAINED: dict[str, list[str]] = YAML(typ="safe").load(Path(__file__).with_name("explained.yaml"))
-# The samples cannot show these codes: two are about a folder and a file of waivers; a sample without
-# commands reports other problems first; the samples lack the right lines of the last two.
+# The samples cannot show these codes. Two are about a folder and a file of waivers; a sample
+# without commands reports other problems first; the samples lack the right lines of the last two.
 WITHOUT_LINES = {"no-edition", "unknown-rule", "no-command", "bad-size", "bad-count"}
 
 
