@@ -257,22 +257,13 @@ def states(edition: Edition) -> Iterator[str]:
 
 
 def speeds(edition: Edition) -> Iterator[str]:
-    """Report motions that ignore the speed in their request, or whose speed has another type."""
+    """Report motions, other than a gripper's, whose speed has another type than a speed."""
     for command in edition.commands:
-        arguments = {f.name: f.type.name for variant in command.requests for f in variant}
         effect = command.effect
-        moves = effect is not None and effect.verb == "moves"
-        heeded = effect is not None and effect.option("speed") == "speed"
-        if moves and "speed" in arguments and not heeded:
-            yield f"{command.name} does not move at the speed that is given"
-        known = ("speed", "motion_speed")
-        if (
-            moves
-            and effect
-            and effect.what != "gripper"
-            and arguments.get("speed", "speed") not in known
-        ):
-            yield f"the speed of {command.name} is a {arguments['speed']}"
+        types = {f.type.name for variant in command.requests for f in variant if f.name == "speed"}
+        if effect and effect.verb == "moves" and effect.what != "gripper":
+            for other in types - {"speed", "motion_speed"}:
+                yield f"the speed of {command.name} is a {other}"
 
 
 # How a motion uses its arguments.
@@ -323,18 +314,6 @@ def openings(edition: Edition) -> Iterator[str]:
                 yield f"{command.name} holds the gripper that it releases"
 
 
-def switches(edition: Edition) -> Iterator[str]:
-    """Report state that is set to true or false but is not a flag."""
-    flags = {state.name for state in edition.states if state.type and state.type.kind == "flag"}
-    others = {state.name for state in edition.states} - flags
-    for command in edition.commands:
-        if (effect := command.effect) is not None:
-            for each in (effect, *(inner for _, inner in effect.cases)):
-                for name, value in each.values if each.verb == "sets" else ():
-                    if name in (others if isinstance(value, bool) else flags):
-                        yield f"{command.name} sets {name} to {value}"
-
-
 def _alike(kept: Type | None, type: Type | None, left: list[Type | None]) -> bool:
     """Return whether a field has the type of a state, or a row of such values.
 
@@ -350,4 +329,4 @@ def _alike(kept: Type | None, type: Type | None, left: list[Type | None]) -> boo
     return [part for _, part in type.parts] == [kept] * int(bounds[1] - bounds[0] + 1)
 
 
-RULES = (named, effects, states, speeds, arguments, openings, switches)
+RULES = (named, effects, states, speeds, arguments, openings)

@@ -111,9 +111,6 @@ AXES |= dict.fromkeys(("rx", "ry", "rz", "theta"), "turn")
 MOST = 0x7FFF  # what a signed word can hold
 # The maker sells the Pro 400, which has no table, as an arm with six axes. A servo turns one.
 JOINTS = {"pro400": 6, "servo_bus": 1}
-# Types that number joints, and numbers of head, waist and all joints.
-NUMBERS = ("joint", "restored_joint", "servo_or_all")
-BESIDE = {11, 12, 13, 254}
 
 
 @lru_cache(maxsize=32)
@@ -175,23 +172,16 @@ def limits(edition: Edition) -> Iterator[str]:
 
 
 def joints(edition: Edition) -> Iterator[str]:
-    """Report another number of joints than the library's table has, in lists and as numbers."""
+    """Report another number of joints than the library's table has."""
     wanted = JOINTS.get(edition.name, _limits(edition.name)[0])
     if wanted is None:
         return
     if edition.joints != wanted:
         yield f"there are {edition.joints} joints; the library's table has {wanted}"
-    for type in {
-        field.type.name: field.type for c in edition.commands for field in c.fields
-    }.values():
+    for type in {f.type.name: f.type for c in edition.commands for f in c.fields}.values():
         numbers = [int(n) for label, _ in type.parts for n in re.findall(r"^j(\d)(?!\d)", label)]
         if numbers and max(numbers) != wanted:
             yield f"{type.name} ends with joint {max(numbers)}; the library's table with {wanted}"
-        if isinstance(type, Quantity) and type.name in NUMBERS:
-            low, high = type.range or (0, -1)
-            numbers = [*type.choices] or [*range(int(low), int(high) + 1)]
-            if {*range(1, wanted + 1)} != {*numbers} - BESIDE:
-                yield f"{type.name} has the joints {numbers}; the library's table {wanted}"
 
 
 def commands(edition: Edition) -> Iterator[str]:
