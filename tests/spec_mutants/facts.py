@@ -1,8 +1,12 @@
-"""Finds the facts of a spec file by the description of the spec language, also of new keys."""
+"""Finds the facts of a spec file, and replaces them.
+
+The description of the spec language says which keys state facts, so it covers new keys too.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from cobotwire_codegen import language
@@ -22,8 +26,9 @@ from cobotwire_codegen.language.records import (
     Part,
 )
 from cobotwire_codegen.language.shapes import Known, Lines, Shape, Text, Texts
-from cobotwire_codegen.load import Mapping, Node, Sequence
-from spec_mutants.nodes import Path
+from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence
+
+Path = tuple[str | int, ...]
 
 # The texts and names that state facts.
 STATED = {
@@ -106,3 +111,28 @@ def _inside(shape: Shape[Any], node: Node, path: Path, kind: str) -> Iterator[Fa
             key = shape.keys().get(name)
             if key is not None:
                 yield from _key(kind.rpartition(".")[0], key, item, (*path, name))
+
+
+def changed(root: Node, path: Path, new: Node | None) -> Node:
+    """Return a tree with another node at ``path``; None removes the node."""
+    if isinstance(root, Mapping):
+        return replace(root, entries=_with_child(dict(root.entries), path, new))
+    assert isinstance(root, Sequence)
+    items = _with_child(dict(enumerate(root.items)), path, new)
+    return replace(root, items=tuple(items.values()))
+
+
+def _with_child(children: dict[Any, Node], path: Path, new: Node | None) -> dict[Any, Node]:
+    step, rest = path[0], path[1:]
+    if rest:
+        children[step] = changed(children[step], rest, new)
+    elif new is None:
+        del children[step]
+    else:
+        children[step] = new
+    return children
+
+
+def with_value(node: Scalar, value: str | int | bool) -> Scalar:
+    """Return a plain value in the place of another."""
+    return replace(node, value=value)

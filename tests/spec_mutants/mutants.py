@@ -30,8 +30,7 @@ from cobotwire_codegen.language.shapes import (
 from cobotwire_codegen.language.words import BUILT_IN
 from cobotwire_codegen.load import Mapping, Node, Scalar, Sequence
 from cobotwire_codegen.model import Edition, Quantity, Type
-from spec_mutants.facts import Fact, facts_of
-from spec_mutants.nodes import Path, changed, with_value
+from spec_mutants.facts import Fact, Path, changed, facts_of, with_value
 
 # A list with more words is reduced to the nearest ones.
 MOST_WORDS = 6
