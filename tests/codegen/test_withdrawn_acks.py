@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from cobotwire_codegen.check import check
-from cobotwire_codegen.diff.editions import diff
 from cobotwire_codegen.errors import SpecError
 from cobotwire_codegen.model import Edition
 from codegen.test_inherited_vectors import HEAD, WHY
@@ -70,10 +69,3 @@ def test_acks_that_the_base_lacks_cannot_be_withdrawn() -> None:
         build_delta(
             f"changes:\n  - withdraw_acks: all\n    {WHY}", HEAD.replace("mycobot280", "mycobot")
         )
-
-
-def test_diff_reports_each_withdrawn_ack() -> None:
-    base = built()
-    delta = built(f"changes:\n  - withdraw_acks: [power_on]\n    {WHY}")
-    found = [one.rule for one in diff(base, delta)]
-    assert "ack-changed" in found

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-import struct
 import zipfile
 from contextlib import suppress
 from dataclasses import replace
@@ -16,6 +15,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 import vectors
+from cobotwire.capture.packet import Interface, Packet
+from cobotwire.capture.writer import CaptureWriter
 from cobotwire.conformance.survey import ASPECTS as SURVEYED
 from cobotwire.conformance.survey.facts import Facts
 from cobotwire.conformance.survey.file import survey_file
@@ -63,13 +64,13 @@ def survey(*facts: Any, **changed: Any) -> dict[str, Any]:
 
 def packed(data: Any, line: str = f"{LIT} {DARK} {ACK}", more: Any = None) -> bytes:
     """Return a survey with a recording of these bytes."""
-    packet = bytes.fromhex(line)
-    size = 32 + len(packet) + -len(packet) % 4
-    head = struct.pack("<IIIHHqI", 0x0A0D0D0A, 28, 0x1A2B3C4D, 1, 0, -1, 28)
-    block = struct.pack("<7I", 6, size, 0, 0, 0, len(packet), len(packet))
-    recording = head + (block + packet).ljust(size - 4, b"\0") + struct.pack("<I", size)
+    recording = io.BytesIO()
+    writer = CaptureWriter(recording)
+    arm = writer.interface(Interface("/dev/ttyACM0"))
+    writer.packet(Packet(0, "received", bytes.fromhex(line), "bytes", interface=arm))
+    writer.finish()
     text = data if isinstance(data, bytes) else json.dumps(data).encode()
-    members = {"survey.json": text, "recording.pcapng": recording} | (more or {})
+    members = {"survey.json": text, "recording.pcapng": recording.getvalue()} | (more or {})
     with zipfile.ZipFile(file := io.BytesIO(), "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in members.items():
             archive.writestr(name, content)
