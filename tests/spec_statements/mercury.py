@@ -1,4 +1,4 @@
-"""States what numbers mean on a Mercury and its relatives, by sources other than the edition's.
+"""States what numbers mean on a Mercury and its relatives, from sources that the edition lacks.
 
 The maker's page on the Mercury X1 is elephantrobotics/Mercury_X1_docs, commit 68d457d5, file
 6-SDKDevelopment/6.4-Communication.md; the edition follows the page on the A1. What that page leaves
@@ -44,8 +44,8 @@ ENDS: dict[str, tuple[Fraction | int, Fraction | int]] = {
     "tool_register": (1, 53),
     "radius": (0, Fraction(0xFFFF, 100)),
 }
-# The page numbers the joints of a seven-joint arm in this way; 254 means all joints. The relatives
-# with six joints have no joint 13.
+# The page gives these numbers to the joints of a seven-joint arm; 254 means all joints. The
+# relatives with six joints have no joint 13.
 RESTORED = {6: [*range(1, 7), 254], 7: [*range(1, 8), 13, 254]}
 # The page: FF 01 accepts a request, and 1 reports that the arm has started. The library: a power-on
 # with the mode 0 does not enable the motors.

@@ -54,7 +54,7 @@ def _end(geometry: Geometry, angles: tuple[float, ...]) -> tuple[np.ndarray, Rot
 
 
 def motion(edition: Edition) -> Iterator[str]:
-    """Report a simulated arm that at full speed does not reach its fastest motion, or states none.
+    """Report an edition without a motion, or whose speed at 100 percent is not its fastest motion.
 
     The notes on kinematics say that a joint turns 1.5 degrees per second for each percent.
     """
@@ -63,11 +63,11 @@ def motion(edition: Edition) -> Iterator[str]:
     if edition.robot.motion is None:
         yield "the edition of a real arm does not state how it moves"
     elif edition.robot.motion.speed * 100 != edition.robot.motion.fastest:
-        yield "100 percent of the speed is not the fastest motion"
+        yield "the speed at 100 percent differs from the fastest motion"
 
 
 def encoders(edition: Edition) -> Iterator[str]:
-    """Report encoders without a tick at a recorded angle, or with another zero than the maker's.
+    """Report encoders with no tick at a recorded angle, or with another zero than the maker's.
 
     The maker's documentation of the calibration says that the present position becomes 2048.
     """
@@ -89,7 +89,7 @@ def encoders(edition: Edition) -> Iterator[str]:
 
 
 def joint_limits(edition: Edition) -> Iterator[str]:
-    """Report limits other than the highest angle that the document's examples send."""
+    """Report joint limits that differ from the largest angle in the document's examples."""
     if edition.name != ARM:
         return
     sent = [
@@ -99,9 +99,9 @@ def joint_limits(edition: Edition) -> Iterator[str]:
         if vector.example and name == "angle" and isinstance(value, int)
     ]
     if set(edition.robot.joint_limits) != {(Fraction(-max(sent)), Fraction(max(sent)))}:
-        yield f"the joints may turn up to {max(sent)} degrees in the examples"
+        yield f"the joint limits differ from ±{max(sent)} degrees, the largest angle in examples"
     if len(edition.robot.joint_limits) != edition.joints:
-        yield "each joint has limits"
+        yield "the edition does not state limits for each joint"
 
 
 # Their simulated arms have no geometry that could reject a motion.
@@ -109,7 +109,7 @@ SILENT = ("myarm300", "pro400", "pro450", "pro630")
 
 
 def error_codes(edition: Edition) -> Iterator[str]:
-    """Report numbers of errors that mean something else where the register is explained."""
+    """Report error codes whose meaning differs from that in the explained error register."""
     meanings = [
         (low, high, text)
         for type in edition.types
@@ -119,7 +119,7 @@ def error_codes(edition: Edition) -> Iterator[str]:
     codes = edition.robot.error_codes
     if codes is None:
         if any("joint" in text for _, _, text in meanings) and edition.name not in SILENT:
-            yield "the numbers of errors are explained, but the simulated arm reports none"
+            yield "the error codes are explained, but the simulated arm reports none"
         return
     wanted = {
         r"joint .* limit": [*codes.joint_limits],
@@ -137,7 +137,7 @@ def error_codes(edition: Edition) -> Iterator[str]:
             continue
         low, high = explained[0]
         if numbers != [*range(low, high + 1)][: len(numbers)]:
-            yield f"{numbers} differ from {low}..{high}, which mean {pattern}"
+            yield f"{numbers} differ from {low}..{high}, which are explained as {pattern}"
 
 
 def servos(edition: Edition) -> Iterator[str]:
@@ -154,12 +154,15 @@ def servos(edition: Edition) -> Iterator[str]:
 
 
 def gripper(edition: Edition) -> Iterator[str]:
-    """Report a gripper with another zero than the calibrated one, or with no tick for a percent."""
+    """Report a gripper with another zero than the calibrated one, or not one tick per percent."""
     if edition.name not in (ARM, "mycobot280"):
         return
     stated = edition.robot.gripper
     if stated is None or (stated.closed, stated.open) != (CALIBRATED, CALIBRATED + 100):
-        yield f"a closed gripper reads {CALIBRATED}, and one tick more for each percent"
+        yield (
+            f"the gripper must read {CALIBRATED} when closed, and one tick more per percent; "
+            f"the edition states {stated}"
+        )
 
 
 def account(edition: Edition) -> Iterator[str]:
@@ -169,7 +172,7 @@ def account(edition: Edition) -> Iterator[str]:
     shown = {dict(vector.values)["ssid"] for vector in edition.vectors if vector.text}
     stated = {state.start for state in edition.states if state.name == "ssid"}
     if not shown & stated:
-        yield f"the arm's Wi-Fi is {stated}, in examples {shown}"
+        yield f"the edition states the Wi-Fi account {stated}; the examples show {shown}"
 
 
 RULES = (geometry, motion, encoders, joint_limits, error_codes, servos, gripper, account)
