@@ -1,4 +1,4 @@
-"""A made-up sensor with every type works in all parts, and so do frames with an address."""
+"""The codec, the client and the command line read and write every type of a made-up sensor."""
 
 from __future__ import annotations
 
@@ -9,29 +9,14 @@ import pytest
 
 import small_specs
 from cobotwire import codec as codecs
-from cobotwire.codec.interface import Frame
 from cobotwire.diagnose.explain import format_message, frame_parts
 from cobotwire.inspect import call_arguments
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.simulator import PtyServer, SimulatedArm
-from strategies import codec_of
 from targets.specs import edition_of
 
 CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")
 each_codec = pytest.mark.parametrize("name", CODECS)
-# Frames that pymycobot 4.0.7's MyBuddy writes: limb, method, arguments, frame.
-BUDDY = [
-    (0, "power_on", (), "FE FE 00 02 10 10"),
-    (1, "power_on", (), "FE FE 01 02 10 10"),
-    (1, "get_angles", (), "FE FE 01 02 20 20"),
-    (2, "send_angle", (3, -12.5, 30), "FE FE 02 06 21 03 FB 1E 1E 5B"),
-    (
-        1,
-        "send_angles",
-        ((1, 2, 3, 4, 5, 6), 50),
-        "FE FE 01 0F 22 00 64 00 C8 01 2C 01 90 01 F4 02 58 32 8D",
-    ),
-]
 
 
 @pytest.fixture(scope="module")
@@ -54,36 +39,6 @@ def test_vectors_decode_to_typed_messages_that_encode_to_the_same_bytes(
         parts = list(frame_parts(table, vector.frame, decoded))
         assert b"".join(part.data for part in parts) == vector.frame
         assert format_message(decoded)
-
-
-@each_codec
-@pytest.mark.parametrize(("limb", "command", "values", "frame"), BUDDY)
-def test_frame_with_an_address_is_encoded_and_decoded(
-    name: codecs.CodecName, limb: int, command: str, values: Any, frame: str
-) -> None:
-    used = codec_of("mybuddy", name)
-    assert used.encode(command, "request", values, address=limb) == bytes.fromhex(frame)
-    message = used.decode("request", bytes.fromhex(frame))
-    assert (message.address, message.command.name, message.values) == (limb, command, values)
-    events = used.framer("request").feed(b"\xfe" + bytes.fromhex(frame))
-    assert [event.offset for event in events if isinstance(event, Frame)] == [1]
-
-
-def test_codecs_agree_on_the_stream_and_the_columns_of_all_vectors(package: Any) -> None:
-    edition = edition_of("sensor")
-    stream = b"\xfe".join(vector.frame or b"" for vector in edition.vectors)
-    reference, native = (codecs.load(package.TABLE, name) for name in CODECS)
-    events = [codec.framer("both") for codec in (reference, native)]
-    found = [framer.feed(stream) + framer.flush() for framer in events]
-    assert found[0] == found[1]
-    assert sum(isinstance(event, Frame) for event in found[0]) == len(edition.vectors)
-    for raw in (False, True):
-        columns = [codec.decode_columns(stream, raw=raw) for codec in (reference, native)]
-        contents = [
-            [(rows.command.name, [rows[name].tolist() for name in rows.names]) for rows in each]
-            for each in columns
-        ]
-        assert contents[0] == contents[1]
 
 
 def test_generated_client_sets_and_reads_every_type_on_a_simulated_sensor(package: Any) -> None:
