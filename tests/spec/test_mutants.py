@@ -11,7 +11,8 @@ from cobotwire_codegen.load import load
 from spec_mutants.campaign import Task, accepted, run, run_all, tasks
 from spec_mutants.spec_files import PATHS, files, verdict_on
 
-# One for each statement, and for each edition; tests/codegen/bad_specs.yaml has one for each check.
+# One mutant for each statement and each edition. For the checks of the generator,
+# tests/codegen/bad_specs.yaml has a bad spec each.
 SAMPLE = {
     "mycobot": (
         "commands/power.yaml: commands.power_on.effect.sets.held: True -> False",

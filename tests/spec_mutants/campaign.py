@@ -17,7 +17,7 @@ from spec_mutants.spec_files import PATHS, ROOT, Verdict, built, files, verdict_
 
 
 class Task(NamedTuple):
-    """One mutant of one file, by its number there."""
+    """One mutant of a file, identified by its number within the file."""
 
     edition: str
     file: Path

@@ -1,9 +1,9 @@
 """States what commands do, derived from their names and descriptions.
 
-An effect is written in a line, such as ``stores pins at pin``: the verb, what it is about, ``at``
-with the arguments that choose an index, and the other keys. This project chose the names of state.
-The state of a setter and its query follows from their names. The type and indices of a state follow
-from the fields that report and set it.
+An effect is written in one line, such as ``stores pins at pin``: the verb, the state or part of
+the arm, ``at`` with the arguments that choose an index, and the other keys. This project chose the
+names of states. Which state a setter and its query share follows from their names. The type and
+indices of a state follow from the fields that report and set it.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def in_words(effect: Effect) -> str:
     return " ".join(filter(None, words))
 
 
-# Words that say the same as the words of a state.
+# For a word in the name of a state, a pattern of other words with the same meaning.
 SAYS: dict[str, str] = {
     "angles": r"encoder|radian|target_angle",
     "held": r"torque|enable|servo|motor|brake|on\b|off\b",
@@ -115,8 +115,7 @@ ABOUT_ITS_OWN = {
 
 
 def named(edition: Edition) -> Iterator[str]:
-    """Report an effect on state that the command's words do not mention, or mention less than other
-    state."""
+    """Report effects on a state that the words of the command name less well than another state."""
     states = [*BUILT_IN, *(state.name for state in edition.states)]
     for command in edition.commands:
         effect = command.effect
@@ -193,8 +192,9 @@ def effects(edition: Edition) -> Iterator[str]:
                 yield f"{command.name} {in_words(effect)}, but its description says {wanted}"
 
 
-# Queries report these for another number of joints than the edition has, or setters accept less.
-# Such state has the type of the setter's field, or of each number that the query reports.
+# For these states, queries report another number of joints than the edition has, or setters accept
+# fewer values. Their type is that of the setter's field; without a setter, that of each number that
+# the query reports.
 PART_OF_FIELD = {
     *("calibrated", "collision_threshold", "torque_compensation", "model_direction", "run_errors"),
     *("zero_encoders", "down_encoders"),
@@ -205,7 +205,7 @@ UNLIKE = {
     *("mercury_b1 servo_faults", "mercury_x1 servo_faults"),
     *("mercury_b1 servo_currents", "mercury_x1 servo_currents"),
 }
-# A type with this prefix numbers joints, and has a number for all of them.
+# A type with this prefix numbers the joints, and has one more number that means all joints.
 OR_ALL = "restored_"
 
 

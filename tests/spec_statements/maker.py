@@ -15,7 +15,7 @@ from robots.classes import ROBOTS
 from spec_statements.quantities import quantities_of
 
 MAKER = library("MyCobot280")
-# The document's edition has the defaults of the class for newer firmware.
+# The edition of the document has the defaults of the class for newer firmware.
 CLASSES = {robot.edition: robot for robot in ROBOTS.values()} | {"mycobot": ROBOTS["MyCobot280"]}
 CLASSES["mercury_x1"] = CLASSES["mercury_b1"]
 # For these the library waits longer: `read` in its common.py, `_read` in its myarm_api.py.
@@ -95,8 +95,8 @@ def _defaults(peer: str, name: str) -> tuple[int | None, ...]:
     return tuple(None if p.default in (p.empty, None) else int(p.default) for p in given)
 
 
-# Tables of limits with another name than the class. The page on the X1 has the limits of its
-# table; those of the class for serial ports differ in joint 12.
+# Tables of limits with another name than the class. The page on the X1 has the limits of
+# MercurySocket; those of the class for serial ports differ in joint 12.
 TABLES = {
     "mercury_a1": "Mercury",
     "mercury_b1": "MercurySocket",
@@ -109,7 +109,7 @@ TARGETS = ("joint target", "joint targets", "coordinate target", "coordinate tar
 AXES = {"x": "x_reach", "y": "y_reach", "z": "height"}
 AXES |= dict.fromkeys(("rx", "ry", "rz", "theta"), "turn")
 MOST = 0x7FFF  # what a signed word can hold
-# The maker sells the Pro 400, which has no table, as an arm with six axes. A servo turns one.
+# The Pro 400 has no table; the maker sells it as an arm with six axes. A servo turns one joint.
 JOINTS = {"pro400": 6, "servo_bus": 1}
 
 

@@ -10,9 +10,9 @@ from collections.abc import Iterator
 
 from cobotwire_codegen.model import Command, Edition
 
-# Name, then description. The first pattern that fits decides.
+# Safety class, pattern of the name, pattern of the description. The first row that fits decides.
 SAFETY = (
-    # Reading consumes what is read.
+    # These queries remove what they read from the device.
     ("setting", r"get_\w+|drag_get_\w+|\w+_read_data", r"Reads the next|Reads bytes and removes"),
     ("query", r"(is|check|read|get|drag_get|tool_serial)_\w+", r"Reads|Reports|Reading|Checks the"),
     ("query", r"get_encoders", r"The positions"),
@@ -89,7 +89,7 @@ ROLES = (
     ("version", r"get_system_version", r"Reads the version of the firmware"),
     ("gripper", r"set_gripper_state", r"Opens, closes|Opens or closes"),
 )
-# The maker's page lists this command and the library lacks it, so nothing may rely on it.
+# The maker's page lists this command, but the library lacks it, so it has no role.
 WITHOUT_ROLE = {("myarm_c650", "is_power_on")}
 # A command, the query that reads it back, and the values that the query must report (None: fields
 # of the same names).

@@ -108,7 +108,7 @@ def cases(edition: Edition) -> Iterator[str]:
     for command in edition.commands:
         for field in command.fields:
             rows: dict[str, set[str]] = {}
-            # A servo may have a range of its own, and a register a type.
+            # Each servo may have its own range, and each register its own type.
             for member, type in field.cases if field.selector in ("joint", "axis") else ():
                 row = re.sub(r"^\d+|(?<=^R)[XYZ]$", "#", member.name)
                 name = re.sub(rf"^j{member.name}(?=_)|^(arm|flange)(?=_)", "#", type.name)

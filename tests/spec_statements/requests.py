@@ -69,7 +69,7 @@ def compared(name: str) -> tuple[tuple[Expected, ...], int]:
 
 
 def _robots(name: str) -> Iterator[Robot]:
-    """Yield the class for an edition; for the oldest one also newer classes, with more requests."""
+    """Yield the class for an edition; for the oldest edition also newer classes."""
     yield from (robot for robot in ROBOTS.values() if robot.edition == name)
     if name == OLDEST.edition:
         for newer in ("MyCobot280", "MyPalletizer260"):

@@ -1,4 +1,4 @@
-"""``cobotwire-gen evidence``: files of owners are checked, and change the confidence of facts."""
+"""``cobotwire-gen evidence`` checks the files that owners send and records what they confirm."""
 
 from __future__ import annotations
 
