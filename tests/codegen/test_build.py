@@ -8,11 +8,9 @@ from pathlib import Path
 
 import pytest
 
-import in_process
 from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.cli import main
 from cobotwire_codegen.render import render_reference
-from in_process import Ended
+from codegen.author.samples import run
 
 LAMP = (Path(__file__).parent / "lamp.yaml").read_text()
 OWN = """\
@@ -29,10 +27,6 @@ MORE = "{quantities: {rate: {wire: byte, doc: How often.}}}\n"
 def folder(tmp_path: Path) -> Path:
     (tmp_path / "lamp.yaml").write_text(LAMP)
     return tmp_path
-
-
-def run(folder: Path, *words: str) -> Ended:
-    return in_process.run(main, "cobotwire-gen", *words, folder=folder)
 
 
 def test_build_writes_package_reference_and_c_and_finds_them_fresh(folder: Path) -> None:

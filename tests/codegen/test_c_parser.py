@@ -122,7 +122,7 @@ def test_text_that_is_not_plain_is_left_to_the_parser_in_python(text: str) -> No
     assert plain_root(text, DEEPEST) is None
 
 
-def test_deep_nesting_ends_without_recursion() -> None:
+def test_deep_nesting_is_left_to_the_parser_in_python() -> None:
     assert plain_root("- " * 500_000, DEEPEST) is None
     assert plain_root("[" * 500_000, DEEPEST) is None
 

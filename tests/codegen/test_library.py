@@ -34,7 +34,7 @@ def problems(tmp_path: Path, text: str) -> list[str]:
     return []
 
 
-def test_file_is_read(tmp_path: Path) -> None:
+def test_correct_library_file_is_read(tmp_path: Path) -> None:
     assert problems(tmp_path, HEAD) == []
 
 
@@ -76,7 +76,7 @@ def test_file_is_read(tmp_path: Path) -> None:
         ("    helper: [Homing]\n", "11:5", "did you mean helpers?"),
     ],
 )
-def test_mistake_is_reported_with_its_place(
+def test_mistake_in_library_file_is_reported_with_its_place(
     tmp_path: Path, wrong: str, place: str, says: str
 ) -> None:
     found = problems(tmp_path, HEAD + wrong)

@@ -15,11 +15,8 @@ from typing import Any
 import pytest
 from ruamel.yaml import YAML
 
-import in_process
-from cobotwire_codegen.check import checked_edition
-from cobotwire_codegen.cli import main
-from cobotwire_codegen.errors import SpecError
 from cobotwire_codegen.load import MOST_BYTES
+from codegen.author import samples
 from codegen.author.test_explain import WITHOUT_LINES
 
 HERE = Path(__file__).parent
@@ -44,11 +41,7 @@ def _name(case: dict[str, Any]) -> str:
 
 
 def _problems(path: Path) -> list[str]:
-    try:
-        checked_edition(path, path.parent)
-    except SpecError as error:
-        return [str(problem) for problem in error.problems]
-    return []
+    return [str(problem) for problem in samples.problems(path)]
 
 
 def test_unchanged_lamp_has_no_problem(tmp_path: Path) -> None:
@@ -102,7 +95,7 @@ def test_check_reports_all_problems_in_three_formats(tmp_path: Path, variant: st
     path = tmp_path / "lamp.yaml"
     path.write_text(LAMP.replace("id: 0x30", "id: 0x130").replace("range: [1, 4]", "range: [4, 1]"))
     words = ("check", "lamp.yaml", "--format", variant)
-    result = in_process.run(main, "cobotwire-gen", *words, folder=tmp_path)
+    result = samples.run(tmp_path, *words)
     assert result.returncode == 2
     first = "range of the quantity channel must be [lowest, highest]"
     if variant == "json":
@@ -121,7 +114,7 @@ def test_check_reports_all_problems_in_three_formats(tmp_path: Path, variant: st
 
 
 def test_folder_without_an_edition_is_reported_as_no_edition(tmp_path: Path) -> None:
-    result = in_process.run(main, "cobotwire-gen", "--root", str(tmp_path))
+    result = samples.run(tmp_path, "--root", str(tmp_path))
     assert result.returncode == 2
     assert "no-edition: there is no edition here" in result.stderr
 

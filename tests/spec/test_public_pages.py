@@ -132,7 +132,7 @@ def _disputes(edition: str, name: str) -> tuple[Dispute, ...]:
 
 
 @pytest.mark.parametrize(("edition", "name", "source", "confidence"), STATED)
-def test_reading_that_a_page_confirms_or_contradicts_cites_it(
+def test_dispute_cites_the_page_that_confirms_or_contradicts_it(
     edition: str, name: str, source: str, confidence: str
 ) -> None:
     assert any(

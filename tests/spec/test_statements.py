@@ -59,7 +59,7 @@ def test_edition_agrees_with_independent_statements(edition: str) -> None:
 
 
 @pytest.mark.parametrize("edition", sorted(AGREEMENT))
-def test_as_many_calls_as_the_page_says_agree_with_the_makers_class(edition: str) -> None:
+def test_as_many_calls_agree_with_the_makers_class_as_the_page_says(edition: str) -> None:
     alike, differ = requests.compared(edition)
     assert (len(alike), differ) == AGREEMENT[edition]
     assert requests.unequal(edition) == UNEQUAL.get(edition, set())

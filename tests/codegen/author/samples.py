@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import in_process
-from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.check import check
+from cobotwire_codegen.check import checked_edition
 from cobotwire_codegen.cli import main
 from cobotwire_codegen.errors import Problem, SpecError
 from cobotwire_codegen.load import Mapping, Node, Sequence
@@ -27,7 +26,7 @@ def copied(to: Path) -> Path:
 def problems(path: Path) -> list[Problem]:
     """Return every problem of an edition."""
     try:
-        check(build_edition(path, path.parent))
+        checked_edition(path, path.parent)
     except SpecError as error:
         return list(error.problems)
     return []
