@@ -42,13 +42,6 @@ def test_new_command_is_inserted_into_the_middle_of_a_one_file_protocol(tmp_path
     assert edition.vectors[-1].frame == bytes.fromhex("FE FE 05 70 02 22 08 FA")
 
 
-def test_new_command_can_be_added_to_a_protocol_from_init(tmp_path: Path) -> None:
-    samples.run(tmp_path, "init", "oven")
-    words = ["--request", "mode:mode", "--reply", "accepted:flag"]
-    assert _new(tmp_path, "oven.yaml", *SETTING, *words)[0] == 0
-    assert samples.run(tmp_path, "check", "oven.yaml").returncode == 0
-
-
 def test_new_command_is_added_to_the_familys_file_and_missing_yaml(tmp_path: Path) -> None:
     copy_spec(tmp_path)
     before = {path: path.read_text() for path in (tmp_path / "spec").rglob("*.yaml")}
@@ -112,14 +105,6 @@ def test_dry_run_prints_entries_and_writes_nothing(tmp_path: Path) -> None:
     assert "  dim:\n    id: 0x70\n" in output
     assert "    frame: FE FE 02 70 FA\n" in output
     assert _texts(folder) == before
-
-
-def test_diagram_shows_address_and_sum_of_a_frame(tmp_path: Path) -> None:
-    folder = samples.copied(tmp_path)
-    query = [*WORDS, "--safety", "query", "--family", "all", "--reply", "lit:flag"]
-    code, output = _new(folder, "bus.yaml", *query, "--reply-vector", "FE FE 01 03 70 01 71")
-    assert code == 0, output
-    assert "values: {lit: true}" in (folder / "bus_vectors.yaml").read_text()
 
 
 def test_new_command_of_an_edition_with_acks_gets_vectors_of_acks(tmp_path: Path) -> None:

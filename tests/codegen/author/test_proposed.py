@@ -1,23 +1,19 @@
-"""Proposed vectors reveal mistakes; ``ids`` and ``explain`` help to write a command."""
+"""Proposed values reveal mistakes; ``ids`` and ``explain`` help to write a command."""
 
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import pytest
 
 from cobotwire_codegen.author.describe import describe_command
 from cobotwire_codegen.author.propose import typical_values
-from cobotwire_codegen.build import build_edition
-from cobotwire_codegen.diff import diff
 from cobotwire_codegen.model import Flag, Quantity
 from cobotwire_codegen.model.frame import Direction
 from cobotwire_codegen.wire import encode_value, encode_variant
 from codegen.author import samples
 from targets.specs import FILES, edition_of
 
-DIFF = Path(__file__).parents[1] / "diff"
 DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
 
 
@@ -40,17 +36,6 @@ def test_proposed_values_are_legal_asymmetric_and_not_zero(name: str) -> None:
     assert [word for word, swapped in words if word == swapped] == []
 
 
-def test_fields_of_one_type_have_different_proposed_values() -> None:
-    edition = edition_of("sensor")
-    command = edition.by_name["get_satellites"]
-    values = typical_values(edition, command, command.reply)
-    assert values["number"] == 3
-    for name in ("satellites", "words"):
-        found = values[name]
-        assert isinstance(found, tuple)
-        assert len(set(found)) == len(found) == 3
-
-
 def test_ids_lists_used_and_free_ids() -> None:
     folder = FILES["sensor"].parent
     text = samples.run(folder, "ids", "sensor.yaml")
@@ -70,11 +55,3 @@ def test_positions_after_a_list_count_from_its_end() -> None:
     rows = [line.split()[:2] for line in shown if line.startswith(("  5-", "  n+", "  m+"))]
     assert rows == [["5-n", "satellites"], ["n+1-m", "words"], ["m+1", "footer"]]
     assert "  2      LEN                      03..3B" in shown
-
-
-def test_diff_of_a_delta_and_its_base_does_not_repeat_its_changes() -> None:
-    base, delta = (build_edition(DIFF / f"{name}.yaml", DIFF) for name in ("base", "delta"))
-    assert any(command.changes for command in delta.commands)
-    rules = {found.rule for found in diff(base, delta)}
-    assert "base-changed" in rules
-    assert "history-changed" not in rules

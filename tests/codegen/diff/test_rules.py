@@ -67,3 +67,9 @@ def test_finding_of_a_type_is_not_repeated_for_its_fields(build: Build) -> None:
         "small/types/angle",
         "small/commands/send_angle/request/angle",
     ]
+
+
+def test_changes_of_a_delta_are_not_reported_as_a_changed_history(build: Build) -> None:
+    base, delta = build(), build(file="delta")
+    assert any(command.changes for command in delta.commands)
+    assert not {found.rule for found in diff(base, delta)} & {"history-changed"}
