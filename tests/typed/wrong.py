@@ -2,7 +2,14 @@
 
 import cobotwire
 from cobotwire import AsyncMyArm300, AsyncMyCobot, MyArm300, MyCobot
-from cobotwire.editions.mycobot import GetAngles, GetEncoder
+from cobotwire.client import Client
+from cobotwire.editions.mycobot import (
+    GetAngles,
+    GetAnglesReply,
+    GetEncoder,
+    GetEncoderReply,
+    SendAngles,
+)
 
 
 def drive(arm: MyCobot) -> None:
@@ -71,3 +78,30 @@ def two_arms() -> None:
     print(left, robot.middle)  # type: ignore
     cobotwire.TwoArms(cobotwire.AsyncMercuryX1, "/dev/left_arm", "/dev/right_arm")  # type: ignore
     cobotwire.TwoArms(cobotwire.MercuryX1, "/dev/left_arm", "/dev/right_arm", speed=1)  # type: ignore
+
+
+def requests(client: Client) -> None:
+    """Pass wrong arguments: types, number and names."""
+    GetEncoder()  # type: ignore
+    GetEncoder("2")  # type: ignore
+    GetEncoder(2, 3)  # type: ignore
+    GetEncoder(servo=2)  # type: ignore
+    SendAngles([0, 0, 0, 0, 0, 0], speed="fast")  # type: ignore
+    GetEncoder(2).joint = 3  # type: ignore
+    print(GetEncoder(2).servo)  # type: ignore
+    text: str = client._call(GetEncoder(2))  # type: ignore
+    print(client._call(GetAngles()).j7)  # type: ignore
+    client._send(GetAngles())  # type: ignore
+    client._call(GetEncoderReply(2))  # type: ignore
+    print(text)
+
+
+def replies(reply: GetEncoderReply | GetAnglesReply) -> None:
+    """Misuse fields of replies, also after a match."""
+    print(reply.encoder)  # type: ignore
+    GetAnglesReply(1)  # type: ignore
+    match reply:
+        case GetEncoderReply(encoder):
+            print(encoder.j1)  # type: ignore
+        case GetAnglesReply(angles):
+            print(angles.x)  # type: ignore
