@@ -31,14 +31,3 @@ def test_boxes_of_the_diagram_align_and_show_every_byte(name: str) -> None:
                     assert len(above) <= len(top)
                 shown = " ".join(lines[::4]).split()
                 assert shown == [position for position, _, _ in rows]
-
-
-def test_diagram_of_a_reply_labels_each_byte() -> None:
-    edition = vectors.edition("mycobot")
-    command = next(command for command in edition.commands if command.name == "is_power_on")
-    assert byte_diagram(byte_rows(edition, command, "reply", command.replies[0])) == (
-        "  0-1     2    3    4         5\n"
-        "┌───────┬────┬────┬─────────┬────┐\n"
-        "│ FE FE │ 03 │ 12 │ powered │ FA │\n"
-        "└───────┴────┴────┴─────────┴────┘"
-    )

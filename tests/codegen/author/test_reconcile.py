@@ -39,7 +39,7 @@ def test_scan_finds_every_frame_of_the_vectors() -> None:
     assert _reconciled(line) == (len(FRAMES), [])
 
 
-# After its header, this unknown frame reads as a known frame of a format without a header.
+# The bytes 02 82 FA inside this unknown frame are a known frame that lacks its header.
 @example(data=b"\x02\x82", count=1)
 @given(data=st.binary(max_size=16), count=st.integers(1, 5))
 def test_reconcile_finds_an_unknown_id_between_known_frames(data: bytes, count: int) -> None:
