@@ -46,7 +46,9 @@ class _App(LazyGroup):
 
     def list_commands(self, context: click.Context) -> list[str]:
         """Return the subcommands, without ``studio`` if the package was built without its page."""
-        return [name for name in SUBCOMMANDS if name != "studio" or CURVES.is_file()]
+        return [
+            subcommand for subcommand in SUBCOMMANDS if subcommand != "studio" or CURVES.is_file()
+        ]
 
     def invoke(self, context: click.Context) -> Any:
         with signals_as_interrupt(), exit_on_errors():

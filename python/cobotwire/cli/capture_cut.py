@@ -67,8 +67,8 @@ def cut(
 ) -> None:
     """Write the chosen packets of the recording FILE to OUT.
 
-    A TIME is in seconds from the first packet, as decode prints them, or in ISO 8601 (UTC, if it
-    names no offset). The bytes, times and comments of what is kept do not change, and all
+    A TIME is in seconds from the first packet, as decode prints them, or in ISO 8601 (UTC, unless
+    it names a time zone). The bytes, times and comments of what is kept do not change, and all
     interfaces stay.
 
     Noise is bytes that belong to no frame. If it is kept while frames are left out, parts of it may

@@ -35,7 +35,7 @@ DAMAGED = 6
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @uses_edition
 def info(edition: str, files: tuple[str, ...], gap: float, as_json: bool) -> None:
-    """Show what each FILE holds, and the totals of several.
+    """Show what each FILE holds, and the totals if there are several.
 
     A rate is measured from the first to the last message of its kind. Noise is bytes that belong to
     no frame. A gap is a pause in which no byte came on an interface. An interface is read with the

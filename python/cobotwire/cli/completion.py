@@ -14,7 +14,9 @@ SHELLS = ("bash", "zsh", "fish")
 @click.argument("shell", type=click.Choice(SHELLS))
 @click.pass_context
 def completion(context: click.Context, shell: str) -> None:
-    """Print the script that makes SHELL complete subcommands, commands, editions, scenarios, ports.
+    """Print the script that completes the words of cobotwire in SHELL.
+
+    It completes subcommands, commands, editions, fault scenarios and ports.
 
     Load it in the start file of the shell:
 

@@ -192,7 +192,7 @@ def _server(listen: str, referee: Referee) -> Server:
     if parts.scheme not in ("socket", "tcp") or parts.path.strip("/"):
         raise UsageError("listen", listen, "pty or socket://HOST:PORT")
     host, port = address(parts.netloc)
-    # All connections count as the same client, because the referee checks one client.
+    # A run checks one client, so all connections count as that client.
     server = TcpServer(lambda: referee, host, port)
     if not server.loopback:
         text = f"anyone who can reach {host} can connect, and is checked as the client"
@@ -224,7 +224,7 @@ def read_script(table: Table, text: str, name: str) -> Iterator[ScriptLine]:
 
 
 def _script_line(table: Table, words: list[str], place: str) -> ScriptLine:
-    """Parse a call of the script, without the text that follows some requests."""
+    """Parse a call of the script. The text that follows some requests is not part of a call."""
     address = None
     if words[1:][-2:-1] == ["--address"]:
         *words, _, to = words

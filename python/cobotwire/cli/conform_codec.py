@@ -65,7 +65,7 @@ def codec(
             words, only or "", timeout, repeat, expected=known_text, expected_name=name
         )
         given = options.for_report()
-        # A report does not state the working folder, so a command may have to be given again.
+        # With --again a new command is allowed: the earlier one may not run in this folder.
         given.pop("command", None)
         earlier = earlier_report(None, again, given, edition, "codec")
         if earlier is not None:

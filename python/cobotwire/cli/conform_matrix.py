@@ -29,7 +29,7 @@ def matrix(reports: tuple[str, ...], as_json: bool) -> None:
     """Show REPORTS, which were written with --json, side by side.
 
     Each column is one report. Compare, for example, several arms, firmwares, clients or codecs. The
-    first table counts the verdicts of each test case, the second one lists the verdicts that
+    first table counts the verdicts of each test case; the second one lists the verdicts that
     differ.
 
     Exit codes: 0 all subjects conform; 1 one does not; 2 a file is not a report.
@@ -78,7 +78,7 @@ def _show(reports: Sequence[Report], rows: Sequence[Row]) -> None:
 
 
 def _table(*names: str) -> Table:
-    """Return a table in which the first two columns do not wrap."""
+    """Return a table whose first two columns do not wrap."""
     table = Table()
     for index, name in enumerate(names):
         table.add_column(name, no_wrap=index < 2)

@@ -30,7 +30,7 @@ def verify(report: str, key: str | None, as_json: bool) -> None:
     """Check whether REPORT (JSON, or a survey) was changed, and show who signed it.
 
     A valid signature shows that the owner of the printed key signed the report. To check that this
-    is the tester, pass --key with the public key that the tester gave you.
+    owner is the tester, pass --key with the public key that the tester gave you.
 
     Exit codes: 0 the report was not changed, and with --key, that key signed it; 1 otherwise;
     2 the file is not a report.
@@ -53,11 +53,11 @@ def verify(report: str, key: str | None, as_json: bool) -> None:
 def _mistake(seal: Seal, wanted: str | None) -> str:
     """Return what is wrong with a report; empty: nothing."""
     if not seal.stated:
-        return "The report has no digest, so changes cannot be noticed."
+        return "The report has no digest, so changes cannot be detected."
     if seal.digest != seal.stated:
         return f"The report was changed: its digest is {seal.digest}, not {printable(seal.stated)}."
     if seal.signature == "wrong":
-        return "The signature is wrong: it was made for another report, or with another key."
+        return "The signature is wrong: it belongs to another report or to another key."
     if wanted is not None and not seal.key:
         return "The report is not signed."
     if wanted is not None and seal.key != wanted:

@@ -63,7 +63,7 @@ def decode(
     several files counts all of them. If an argument is both hex and an existing file, write ./NAME
     for the file or 0xNAME for the bytes.
 
-    A recording (pcapng, as other subcommands write it with --record) is decoded packet by packet.
+    A recording (pcapng, which other subcommands write with --record) is decoded packet by packet.
     Each frame is decoded in the direction in which it was sent, and printed with its time. If a
     packet does not state its direction, --direction says which messages it holds.
 

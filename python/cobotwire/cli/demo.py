@@ -79,7 +79,7 @@ def _readings(traffic: Sequence[Traffic]) -> list[Reading | None]:
 
 
 def _worth_showing(readings: Sequence[Reading | None]) -> list[bool]:
-    """Return which messages to show: between non-queries, the first two and the last of a kind."""
+    """Return which messages to show: all but repeated queries between two other commands."""
     shown = [False] * len(readings)
     kinds: dict[object, list[int]] = {}
     for index, reading in enumerate(readings):

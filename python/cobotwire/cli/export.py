@@ -90,7 +90,7 @@ def _keys(context: click.Context, option: click.Parameter, value: str) -> tuple[
     default="",
     callback=_keys,
     metavar="KEYS",
-    help="Write folders by robot, command and day: any of these, with commas between them.",
+    help="Sort files into folders by any of robot, command and day, with commas between them.",
 )
 @click.option(
     "--compression",
@@ -157,8 +157,8 @@ def export(
       cobotwire export 'captures/*.pcapng.zst' -o lake/ --partition robot,command,day
       cobotwire export arm.pcapng -o arm.mcap --from 2026-11-23T14:00 --to 2026-11-23T15:00
 
-    With --engine, OUT is a folder or an fsspec URL. Each message then gets one file for each 64 MiB
-    of raw bytes and one for each recording: get_angles.reply-00012.parquet.
+    With --engine, OUT is a folder or an fsspec URL, and each message has several files: one for
+    each 64 MiB of raw bytes, and one for each recording: get_angles.reply-00012.parquet.
 
     \b
       cobotwire export s3://lab/raw/ -o s3://lab/lake/ --engine dask --scheduler tcp://head:8786

@@ -27,7 +27,7 @@ from cobotwire.inspect.monitor import FollowingMonitor, monitored
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.json_values import as_json_value
 
-# The width of a number with its name and the space after it; the width of the borders, less the
+# Widths in characters: of a number with its name and the space after it; of the borders, minus the
 # space that the last number does not need.
 NUMBER_COLUMNS, BORDER_COLUMNS = 13, 5
 

@@ -56,11 +56,11 @@ def ros2(
     """Publish the arm at URL on the topics of ROS 2, until Ctrl-C; ROS need not be installed.
 
     /joint_states has the joints in radians, and /tf has the pose of the end of the arm in the
-    frame `base`. /diagnostics has the state of the port and the arm, once a second. Only queries
+    frame `base`. /diagnostics has the state of the port and of the arm, once a second. Only queries
     are sent.
 
-    With --allow-motion the arm follows what comes on /joint_trajectory, within the limits; it is
-    stopped when nobody publishes that topic for --silence seconds, and at the end.
+    With --allow-motion the arm follows the trajectories on /joint_trajectory, within the limits; it
+    is stopped when nobody publishes that topic for --silence seconds, and at the end.
 
     Only programs on this computer find the topics, unless --interface,
     ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET or ROS_LOCALHOST_ONLY=0 says otherwise.

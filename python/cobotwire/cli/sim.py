@@ -62,7 +62,7 @@ def _list_scenarios(context: click.Context, option: click.Parameter, wanted: boo
     "--led",
     type=click.Path(),
     metavar="FILE",
-    help="Lead the arm by hand while it is released; each line of FILE has seconds, then angles.",
+    help="Simulate a hand that leads the released arm; a line of FILE has seconds, then angles.",
 )
 @click.option(
     "--behaviours",

@@ -41,7 +41,11 @@ from cobotwire.transport import open_transport
 @click.command()
 @click.argument("port", metavar="URL", shell_complete=complete_ports)
 @arm_options
-@click.option("--tcp", metavar="[HOST]:PORT", help="Offer TCP instead of a pty; :0 is a free port.")
+@click.option(
+    "--tcp",
+    metavar="[HOST]:PORT",
+    help="Offer a TCP port instead of a pseudo-terminal; :0 is a free one.",
+)
 @click.option("--read-only", is_flag=True, help="Let only queries and stop commands pass.")
 @click.option(
     "--only",
@@ -163,7 +167,7 @@ class _Show:
             self._print(packet_line(packet, after, meaning))
 
     def other(self, copy: Copy) -> None:
-        """Show what is not on the arm's line: requests that were held back, and notes."""
+        """Show what is not traffic of the arm: requests that were held back, and notes."""
         after, text = copy.time - self._started_at, copy.data.decode("latin-1")
         if copy.kind == "held":
             meaning = meaning_of(Packet(0, "sent", copy.data), self._codec)

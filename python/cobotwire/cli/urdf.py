@@ -16,7 +16,9 @@ from cobotwire.kinematics.urdf_writing import write_urdf
 @click.option(
     "-o", "--output", type=click.Path(), default="-", help="A file [default: standard output]."
 )
-@click.option("--prefix", default="", help="Begin each name of a link or joint, as in left_j1.")
+@click.option(
+    "--prefix", default="", help="Put this before the name of each link and joint, as in left_j1."
+)
 def urdf(name: str, output: str, prefix: str) -> None:
     """Write the arm of EDITION as a URDF, if its geometry is known.
 

@@ -118,7 +118,7 @@ def _load(path: str, kind: type, argument: str) -> Any:
     except ValueError as error:
         which = "private" if argument == "sign" else "public"
         message = (
-            f"{path} holds no {which} key of Ed25519, as PEM or in OpenSSH's format, without a "
+            f"{path} is not an Ed25519 {which} key in PEM or OpenSSH format without a "
             f"passphrase: {error}"
         )
         raise UsageError(argument, message=message) from None

@@ -90,7 +90,7 @@ def test_signed_report_is_verified_with_the_key_of_its_tester(
     file.write_text(json.dumps(document))
     assert verify(file) == (
         1,
-        "The signature is wrong: it was made for another report, or with another key.\n",
+        "The signature is wrong: it belongs to another report or to another key.\n",
     )
 
 
@@ -140,7 +140,7 @@ def test_key_that_cannot_sign_is_named_before_the_run(tmp_path: Path) -> None:
         generate_private_key(65537, 1024).private_bytes(Encoding.PEM, PEM, NoEncryption())
     )
     for path, message in (
-        (locked, "holds no private key of Ed25519"),
+        (locked, "is not an Ed25519 private key in PEM or OpenSSH format"),
         (rsa, "it is a key of another kind"),
         (tmp_path / "none", "none: No such file"),
     ):

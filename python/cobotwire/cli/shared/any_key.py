@@ -43,7 +43,7 @@ def interrupted_by_any_key(wanted: bool = True) -> Iterator[None]:
 
 @contextmanager
 def _single_keys() -> Iterator[None]:
-    """Pass keys on without waiting for a line; restore the terminal at the end."""
+    """Deliver each key without waiting for the end of a line; restore the terminal at the end."""
     if sys.platform == "win32":
         yield
         return

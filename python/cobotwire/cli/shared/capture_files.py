@@ -17,14 +17,16 @@ _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 def output_options(subcommand: Callable[..., Any]) -> Callable[..., Any]:
     """Add the options of a subcommand that writes a recording."""
-    overwrite = click.option("--overwrite", is_flag=True, help="Replace OUT if it exists.")
+    subcommand = click.option("--overwrite", is_flag=True, help="Replace OUT if it exists.")(
+        subcommand
+    )
     help = "The recording to write."
-    output = click.option("-o", "--output", required=True, metavar="OUT", help=help)
-    return output(overwrite(subcommand))
+    option = click.option("-o", "--output", required=True, metavar="OUT", help=help)
+    return option(subcommand)
 
 
 def recorded_size(paths: Iterable[str]) -> int | None:
-    """Return the size of recordings in bytes; None if one is compressed, or is not a file."""
+    """Return the size of all recordings in bytes; None if one must be decompressed to know it."""
     total = 0
     for path in paths:
         if not os.path.isfile(path) or path.endswith((*COMPRESSED,)):

@@ -45,7 +45,8 @@ class ReportOptions:
     """The caller's options for the report, and the facts about the run that it states.
 
     ``json``, ``html`` and ``junit`` are names of files; ``-`` is standard output. ``expected`` is
-    the text of the file of known failures. ``watch`` observes the host since the subcommand began.
+    the text of the file of known failures. ``watch`` observes the host from the start of the
+    subcommand.
     """
 
     json: str | None = None
@@ -161,7 +162,7 @@ def write_reports(report: Report, wanted: ReportOptions) -> None:
 def conclude(report: Report, wanted: ReportOptions, known: Sequence[Expectation] = ()) -> None:
     """Write the reports, print the failures and counts, and exit with the verdict's code.
 
-    ``known`` are the expected failures; empty if the run has already excused them.
+    ``known`` are the expected failures; empty if the run has already taken them into account.
     """
     report.results = with_known(known, report.results)
     report.tester, report.serial = wanted.tester, hashed(wanted.serial)

@@ -41,7 +41,7 @@ def _codec(edition: str, name: codecs.CodecName) -> Codec:
 
 
 def _summary_of(codec: Codec, options: DecodeOptions) -> StreamSummary | None:
-    """Return a summary, if it can do what the options ask for."""
+    """Return a summary; None if the options or the codec need an object for each frame."""
     if not options.as_json and not options.quiet:
         return None
     from cobotwire.diagnose.stream_summary import StreamSummary

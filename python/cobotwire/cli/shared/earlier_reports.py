@@ -32,7 +32,8 @@ def earlier_report(
         kind: the kind of subject.
 
     Raises:
-        UsageError: the file is not such a report, or options are given in addition.
+        UsageError: the file is no report on this kind of subject and this edition, or other
+            options are given too.
     """
     if resume is None and again is None:
         return None

@@ -10,7 +10,7 @@ import click
 from cobotwire.cli.shared.completers import complete_editions
 from cobotwire.editions import DEFAULT
 
-# The key of the given editions in ``meta``, the dictionary that nested contexts share.
+# The key of the given editions in ``meta``, which the contexts of groups and subcommand share.
 _GIVEN = "cobotwire.editions"
 
 
@@ -41,7 +41,7 @@ def uses_edition(subcommand: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def note_unused(context: click.Context, subcommand: click.Command) -> None:
-    """Print to standard error that a subcommand does not use the ``--edition`` before it."""
+    """Print to standard error that the edition before a subcommand has no effect on it."""
     takes = isinstance(subcommand, click.Group) or any(
         "--edition" in p.opts for p in subcommand.params
     )

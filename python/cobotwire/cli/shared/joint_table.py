@@ -22,7 +22,7 @@ SHOWN: tuple[tuple[Role, str], ...] = (
     ("powered", "powered"),
     ("moving", "moving"),
 )
-# The arm replies at once, or never.
+# A simulated arm replies at once or not at all.
 REPLY_SECONDS = 0.05
 
 

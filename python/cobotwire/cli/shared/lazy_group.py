@@ -1,4 +1,4 @@
-"""A group of subcommands; each is imported when it is used."""
+"""A group of subcommands that imports a subcommand when it is used."""
 
 from __future__ import annotations
 
@@ -11,9 +11,7 @@ from cobotwire.protocol.errors import did_you_mean
 
 
 class LazyGroup(click.Group):
-    """A group of subcommands with their summaries.
-
-    Since it holds the summaries, neither ``--help`` nor a subcommand imports another one.
+    """A group that imports only the subcommand that runs; ``--help`` imports none.
 
     The subcommand NAME is the function NAME in the module MODULES + NAME.
     """
@@ -27,7 +25,7 @@ class LazyGroup(click.Group):
         return list(self.subcommands)
 
     def get_command(self, context: click.Context, name: str) -> click.Command | None:
-        """Import a subcommand; return None if there is none of that name."""
+        """Import a subcommand; return None if no subcommand has that name."""
         if name not in self.subcommands:
             return None
         subcommand = getattr(import_module(self.modules + name), name)

@@ -24,8 +24,8 @@ class LineOutput:
     """Prints lines to standard output; into a pipe only as fast as its reader takes them.
 
     A pipe that nobody reads is full after some hundred lines, and the next write would stop the
-    server and the arm. So lines are queued. When the queue is full, further lines are left out, and
-    a line says how many.
+    server and the arm. So lines wait in memory. If too many wait, further ones are left out, and a
+    line says how many.
     """
 
     def __init__(self, left_out: Callable[[int], str]) -> None:

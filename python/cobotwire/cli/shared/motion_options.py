@@ -1,4 +1,4 @@
-"""The options of each subcommand that lets a page or another program move the arm."""
+"""The options of every subcommand that lets others move an arm: pages, programs, machines."""
 
 from __future__ import annotations
 

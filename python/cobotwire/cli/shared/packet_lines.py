@@ -1,4 +1,4 @@
-"""Format the packets of a recording or of a port, for people and as JSON."""
+"""Print packets, recorded or live, for people and as JSON."""
 
 from __future__ import annotations
 

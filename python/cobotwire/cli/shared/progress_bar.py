@@ -13,7 +13,7 @@ from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, TimeR
 def progress_bar(
     work: str, size: int | None, *, hidden: bool = False
 ) -> Iterator[Callable[[int], None]]:
-    """Yield a function that takes the sizes of reads, and shows them if there is a terminal.
+    """Yield a function to call with the size of each read; it moves a bar on a terminal.
 
     ``size`` is the number of bytes to read; None if it is not known.
     """

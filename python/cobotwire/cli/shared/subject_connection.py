@@ -75,7 +75,7 @@ STARTING = 10.0
 
 @contextmanager
 def connected(table: Table, subject: Subject, lacking: Lacking) -> Iterator[DeviceConnection]:
-    """Yield the connection with the device; a program that was started is stopped at the end.
+    """Yield the connection with the device; at the end, stop the program if one was started.
 
     Raises:
         UsageError: see :meth:`Subject.validate`.
