@@ -142,7 +142,7 @@ def test_motion_keeps_the_limits_and_reports_its_end() -> None:
         assert "speed is 101; allowed: " in await call("move_angles", **FAR | {"speed": 101})
         assert "angles.j1 is 169" in await call("move_angles", angles=[169] + [0] * 5, speed=9)
         found = await call("move_angles", angles=[5] + [0] * 5, speed=100)
-        assert found == {"result": "the arm is there"}
+        assert found == {"result": "the arm has arrived"}
         # The motion counts as ended when the arm reports the target as reached, within a tolerance.
         assert (await call("get_angles"))["result"]["j1"] == pytest.approx(5, abs=0.5)
 

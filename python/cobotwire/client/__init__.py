@@ -1,4 +1,4 @@
-"""The clients: thin loops between a transport and the exchange; ``aio`` is the one for asyncio."""
+"""Run the session's exchange over a transport, for blocking programs and (``aio``) for asyncio."""
 
 from cobotwire.client.blocking import Client
 from cobotwire.session import Traffic

@@ -1,4 +1,4 @@
-"""One transport on an event loop, shared by the tasks of the loop: what asyncio clients call."""
+"""Share one transport among the tasks of an event loop; asyncio clients call this."""
 
 from __future__ import annotations
 
@@ -171,7 +171,7 @@ class AsyncConnection:
                 self._port.close_recording()
 
     def leave_to_parent(self) -> None:
-        """Make every call in a forked child fail: loop and transport belong to the parent."""
+        """Let every call in a forked child fail: loop and transport belong to the parent."""
         if self._steps is not None and self._steps.lost is None:
             error = LinkError(self.url, f"cannot be used: {forks.opened_by_parent()}")
             self._steps.leave_to_parent(error)

@@ -28,7 +28,7 @@ class AsyncSteps:
         exchange: the session.
         transport: the transport on the loop.
         loop, timers: the loop, and the timers that its connections share.
-        listeners: get what passes the connection.
+        listeners: receive all traffic of the connection.
         writer: writes requests.
         lost: why the transport is gone; None: it is open.
         deadline: how many seconds a call may take; perhaps inf.

@@ -1,4 +1,4 @@
-"""One transport that many threads share: what the blocking clients call."""
+"""Share one transport among many threads; blocking clients call this."""
 
 from __future__ import annotations
 

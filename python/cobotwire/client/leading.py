@@ -1,6 +1,6 @@
-"""Choose which of the waiting threads reads for all.
+"""Choose which of the waiting threads, the leader, reads for all.
 
-One of them leads. When its own reply has come, another takes over. Ctrl-C may end the leader's loop
+When the leader's own reply has come, another thread takes over. Ctrl-C may end the leader's loop
 before it can resign, so a leader that makes no progress is replaced. If it was only slow, two
 threads read for a while; the lock of the reader keeps the bytes in order.
 """
@@ -52,7 +52,7 @@ class Leading:
                 self.wake_followers()
 
     def follow(self, pending: Pending, longest: float) -> None:
-        """Wait until the leader has something, or another thread must lead.
+        """Wait until the leader has read something, or another thread must lead.
 
         The wait takes ``longest`` seconds at most.
         """

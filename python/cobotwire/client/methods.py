@@ -11,9 +11,10 @@ R = TypeVar("R")
 
 
 def shared(method: Callable[Concatenate[Any, P], R]) -> Callable[Concatenate[Any, P], R]:
-    """Return the method of a base edition for a class that does not inherit from the base's.
+    """Return a method of the base edition's class, for the class of a delta.
 
-    A delta does not inherit, since it would have the methods that it withdraws.
+    The class of a delta does not inherit from that of the base, because it would also inherit the
+    methods that the delta withdraws.
     """
     return method
 

@@ -52,7 +52,7 @@ class PersistedSession:
         return PersistedState(tuple(sorted(late, key=lambda late: late.until)), tuple(parts))
 
     def leave(self, state: PersistedState) -> None:
-        """Leave a note on the port, unless the line is aligned and silent."""
+        """Leave a note on the port if a reply is outstanding or a request was cut."""
         if state.empty:
             return
         state = PersistedState(state.late[-MOST_ENTRIES:], state.parts[-MOST_ENTRIES:])

@@ -117,7 +117,8 @@ def _read(note: dict[str, Any], key: str) -> PersistedState:
         # The machine has rebooted, so no late reply can come. But the arm may still hold the parts.
         return PersistedState((), tuple(parts))
     if not note["boot"]:
-        # Nothing identifies a boot here. If more time has passed by the wall clock, count that.
+        # This system has no boot id. If the wall clock advanced more than the monotonic clock, a
+        # reboot may have reset the latter, so the longer time counts.
         hidden = max(0.0, time.time() - wall - passed)
         late = [reply._replace(until=reply.until - hidden) for reply in late]
     return PersistedState(tuple(late), tuple(parts))

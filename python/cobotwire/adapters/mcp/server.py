@@ -1,4 +1,4 @@
-"""The server: it owns the arm, answers one client of MCP on stdin and stdout, and ends with it."""
+"""Serve one arm to one client of MCP on stdin and stdout, until that client ends."""
 
 from __future__ import annotations
 
@@ -27,7 +27,9 @@ INSTRUCTIONS = (
     "stop works at any time, also while another tool waits."
 )
 MOVES = "It really moves: read its position first, move slowly, and keep people safe."
-WATCHES = "Only queries are permitted: the user starts the server with --allow-motion to move it."
+WATCHES = (
+    "Only queries are permitted. To move it, the user must start the server with --allow-motion."
+)
 
 
 class Options(NamedTuple):
@@ -49,7 +51,7 @@ class Options(NamedTuple):
 
 
 class ArmServer:
-    """The tools of one arm, which is open. Leaving its ``async with`` block stops a motion."""
+    """The tools of one arm with an open port. Leaving the ``async with`` block stops a motion."""
 
     def __init__(self, arm: AsyncClient, options: Options) -> None:
         self._arm, self._options = arm, options
@@ -81,7 +83,7 @@ class ArmServer:
         if self._dead_man is not None:
             await self._dead_man.__aexit__()
             if self._moving:
-                # If it cannot be sent, the port is gone.
+                # If stop cannot be sent, the port is gone.
                 with suppress(CobotwireError):
                     await self._arm._stop_all()
 
@@ -129,7 +131,7 @@ class ArmServer:
         )
 
     async def _run(self, work: Coroutine[Any, Any, Any]) -> Any:
-        """Run a call in a task of its own, which sends stop for a motion that is cancelled."""
+        """Run a call in its own task. If the call is cancelled, that task stops its motion."""
         task = asyncio.create_task(work)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
@@ -160,10 +162,10 @@ class ArmServer:
         command = everything[name].command
         if command.safety != "query" and not self._options.allow_motion:
             return (
-                f"{name} is not a query ({command.safety}): the user starts the server with "
+                f"{name} is not a query ({command.safety}): the user must start the server with "
                 "--allow-motion to permit it"
             )
-        return f"{name} is not offered: it is outside of the limits, or needs --tools all"
+        return f"{name} is not offered: the limits refuse it, or it needs --tools all"
 
 
 def serve(options: Options) -> None:

@@ -22,7 +22,7 @@ BASIC: tuple[Role, ...] = (
     *("joints", "coordinates", "moving", "powered", "paused", "error", "version"),
     *("gripper", "light"),
 )
-# The methods of clients that return when the arm has arrived, and the roles of what they send.
+# The client methods that return when the arm has arrived, and the role of the command of each.
 WAITED: dict[str, Role] = {
     "move_angles": "joint targets",
     "move_coords": "coordinate targets",
@@ -37,7 +37,7 @@ class ToolSpec(NamedTuple):
         description: what it does, for a model.
         schema: the JSON schema of its arguments.
         command: what it sends.
-        hints: the annotations of MCP by their names there.
+        hints: MCP's annotations of a tool, by their names in MCP.
     """
 
     name: str
@@ -62,7 +62,7 @@ class ToolSpec(NamedTuple):
     def result(self, value: Any) -> dict[str, Any]:
         """Return a result as a JSON object, with the unit of each number that has one."""
         if value is None:
-            return {"result": "the arm is there" if self.name in WAITED else "sent"}
+            return {"result": "the arm has arrived" if self.name in WAITED else "sent"}
         numbers = [n for variant in self.command.reply for f in variant.fields for n in f.numbers]
         fields = [f for variant in self.command.reply for f in variant.fields if f.numbers]
         units = {n.name: n.units for n in numbers if n.name and n.units}
@@ -112,9 +112,9 @@ def _spec(name: str, command: Command, form: Form) -> ToolSpec:
     }
     about = f"{command.title}. {command.doc}"
     if name in WAITED:
-        about += " It returns when the arm is there, or says why it is not."
+        about += " It returns when the arm has arrived, or reports why it has not."
     if command.safety == "persistent write":
-        about += " It stays when the power is off: ask before you use it."
+        about += " Its effect persists without power: ask the user before you use it."
     query = command.safety == "query"
     harmless = query or command.safety == "setting" or command.role in ("stop", "halt")
     hints = {
@@ -151,7 +151,7 @@ def _property(form: Form) -> dict[str, Any]:
 
 
 def _numbers(elements: list[Form]) -> dict[str, Any]:
-    """Return one schema for several numbers; its range includes those of all."""
+    """Return one schema for several numbers; its range covers the range of each."""
     whole = all(each["step"] == 1 for each in elements)
     found: dict[str, Any] = {"type": "integer" if whole and elements else "number"}
     ends = [each[end] for end in ("low", "high") for each in elements]

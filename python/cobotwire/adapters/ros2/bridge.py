@@ -24,10 +24,10 @@ TRANSFORMS = 100
 
 
 class Bridge:
-    """Samples an arm; publishes its joints, the pose of its end, its state.
+    """Samples an arm; publishes its joints, the pose of its end, and its state.
 
     Attributes:
-        topics: the topics that it publishes, and then those that it takes.
+        topics: the topics that it publishes, then those that it reads.
     """
 
     def __init__(
@@ -39,7 +39,7 @@ class Bridge:
         silence: float | None = None,
         speed: int = 100,
     ) -> None:
-        """Publish at most ``rate`` samples a second; name the port ``url``.
+        """Publish at most ``rate`` samples a second; ``url`` names the port in the diagnostics.
 
         A motion is stopped if its sender is gone for ``silence`` seconds; None: the arm takes no
         motions. No joint exceeds ``speed`` percent of its highest speed.
@@ -65,7 +65,7 @@ class Bridge:
             self.topics.append("/joint_trajectory")
 
     async def run(self) -> None:
-        """Publish samples until it is cancelled.
+        """Publish samples until this task is cancelled.
 
         Raises:
             LinkError: the port disappeared; the diagnostics report it.
@@ -94,7 +94,7 @@ class Bridge:
             if passed >= DIAGNOSTICS_SECONDS:
                 await self._diagnostics.report(taken / passed)
                 taken, reported = 0, reported + passed
-            # Missed samples are not taken later, because the arm is busy enough.
+            # Missed samples are skipped: catching up would load an arm that is already too slow.
             due = max(due + self._period, time.monotonic())
             await asyncio.sleep(due - time.monotonic())
 

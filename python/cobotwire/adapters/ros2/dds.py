@@ -1,4 +1,4 @@
-"""Exchange the messages of ROS 2 on DDS, with its names of topics and types, and its QoS."""
+"""Exchange messages on DDS with ROS 2's topic names, type names and QoS."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _TYPES = {each: getattr(types, each) for each in ("byte", "int32", "uint32", "fl
 
 
 class Network(NamedTuple):
-    """Where other participants find ours: in words, and as a configuration of Cyclone DDS."""
+    """Where other participants find ours: a name for users, and a Cyclone DDS configuration."""
 
     name: str
     configuration: str
@@ -47,7 +47,7 @@ class Network(NamedTuple):
 
 
 def network(interface: str | None, environment: Mapping[str, str] = os.environ) -> Network:
-    """Return the network that an interface (name or address), or else ROS 2's variables, choose.
+    """Return the network of an interface (name or address), or the one that ROS 2's variables set.
 
     ``CYCLONEDDS_URI`` can change the configuration, as for ROS 2.
 
@@ -160,7 +160,7 @@ def struct_of(kind: str) -> type[IdlStruct]:
         one = str if field.kind == "string" else _TYPES.get(field.kind) or struct_of(field.kind)
         fields[field.name] = types.sequence[one] if field.many else one
     made: type[IdlStruct] = make_idl_struct(f"{name}_", f"{package}.msg.dds_.{name}_", fields)
-    # The bytes of MCAP files are those of DDS.
+    # The sample holds its bytes already: MCAP files and DDS use the same ones.
     made.serialize = lambda self, **options: self.cdr
     return made
 

@@ -16,7 +16,7 @@ from cobotwire.protocol.table import Number
 from cobotwire.session.paths import Waypoint
 
 PERIOD_SECONDS = 0.02
-# More would keep the program busy: it plans the motion as a whole.
+# More would block the program for too long, because it plans the whole motion at once.
 MOST_POINTS, LONGEST_SECONDS = 1000, 600
 
 
@@ -77,7 +77,7 @@ class Motion:
         self._sender = 0
 
     async def run(self) -> None:
-        """Take trajectories until it is cancelled."""
+        """Follow the received trajectories until this task is cancelled."""
         try:
             while True:
                 for message, sender in self._reader.take():
