@@ -87,7 +87,7 @@ def test_file_of_another_program_is_read_with_times_and_directions(
     [
         (8, ""),
         (34, "lacks 26 bytes received before line 3; what follows is part 2"),
-        (3, "goes back to bytes received before line 3; what follows is part 2"),
+        (3, "repeats bytes received before line 3; what follows is part 2"),
         (0, ""),
     ],
 )

@@ -118,7 +118,7 @@ def read_exactly(file: Readable, size: int) -> bytes:
 
 
 def order_of(magic: bytes, name: str, offset: int) -> str:
-    """Return the byte order that the second number of a section's body shows."""
+    """Return the byte order of a section, from its byte-order magic."""
     for order in "<>":
         if struct.unpack(order + "I", magic)[0] == blocks.BYTE_ORDER_MAGIC:
             return order

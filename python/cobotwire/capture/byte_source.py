@@ -26,7 +26,8 @@ class ByteSource(NamedTuple):
     """Blocks of bytes, each with the number of input bytes that were read for it.
 
     ``size`` is the length of the input in bytes, if it is known. ``from_arguments`` is whether the
-    arguments themselves are the bytes. ``missing`` is what the input lacks; complete at its end.
+    arguments themselves are the bytes. ``missing`` lists what the input lacks; the list is complete
+    when all blocks were read.
     """
 
     blocks: Iterator[tuple[bytes, int]]

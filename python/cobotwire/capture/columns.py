@@ -37,7 +37,8 @@ class ColumnsReader(Protocol):
     """Reads a capture piece by piece; the rows do not depend on the pieces.
 
     Memory is bounded whatever the file contains: between two calls the reader keeps an incomplete
-    block (less than 16 MiB), and the bytes of each stream that are not accounted for yet.
+    block (less than 16 MiB), and the bytes of each stream that are not yet part of a frame or of
+    noise.
     """
 
     def feed(self, data: Data) -> CapturedColumns:
@@ -95,7 +96,7 @@ def read_batches(
     raw: bool = False,
     piece: int = PIECE,
 ) -> Iterator[CapturedColumns]:
-    """Yield a capture in batches, in bounded memory: the columns of ``piece`` bytes of it each.
+    """Yield the columns of a capture in batches of ``piece`` bytes of the file, in bounded memory.
 
     The last batch has the rest, ``finished`` and ``truncated_at``.
 

@@ -12,8 +12,8 @@ from cobotwire.protocol.errors import CaptureError, UsageError
 Compression = Literal["gzip", "zstd"]
 
 _MAGIC: dict[bytes, Compression] = {b"\x1f\x8b\x08": "gzip", b"\x28\xb5\x2f\xfd": "zstd"}
-# Compressed bytes to decompress at a time. gzip may expand a byte to 1,032, and zstd a block of
-# four to 128 KiB: so no step makes more than 17 MB.
+# Compressed bytes to decompress at a time. gzip may expand one byte to 1,032 bytes, and zstd a
+# four-byte block to 128 KiB. So no step makes more than 17 MB.
 _SLICES: dict[Compression, int] = {"gzip": 1 << 12, "zstd": 1 << 9}
 # The longest distance that zstd may refer back to, as a power of two: the limit of its own tool.
 # The decompressor buffers that number of bytes.

@@ -38,7 +38,7 @@ SourcePath = str | os.PathLike[str]
 _WRITE = 1 << 18
 # Later than any time stamp; negated, earlier than any.
 _ALWAYS = 1 << 200
-# Losses that are listed; all are counted.
+# At most this many losses are listed; all are counted.
 _LISTED = 20
 
 
@@ -144,7 +144,8 @@ def by_command(
 ) -> Choose:
     """Return a chooser of requests and replies of ``commands``, or of all but ``not_commands``.
 
-    ``noise`` is whether noise is kept. A packet with several frames is kept for any of them.
+    ``noise`` is whether noise is kept. A packet with several frames is kept if any of them is
+    chosen.
     """
     framers: dict[tuple[int, str], tuple[Codec, Framer]] = {}
 
@@ -249,7 +250,8 @@ class _Source:
         fields = Fields(header.parsed, file.name)
         fields.numbers("IHHq")
         program = self.application or "a program without a name"
-        self.comments = [f"merged from {file.name}, with the clock of its computer, by {program}"]
+        origin = f"merged from {file.name}, recorded by {program}"
+        self.comments = [f"{origin}; times are those of the recording computer"]
         self.comments += [decoded(it) for code, it in fields.options() if code == blocks.COMMENT]
 
     def blocks(self, number: int) -> Iterator[tuple[int, int, StoredBlock]]:
@@ -301,7 +303,7 @@ class Repair:
         packets: how many packets were kept.
         losses: the first ranges of bytes that were lost.
         lost_ranges, lost_bytes: the numbers of all lost ranges and bytes.
-        marked: the number of interfaces that are marked as finished now.
+        marked: the number of interfaces that this repair marked as finished.
     """
 
     def __init__(self) -> None:
@@ -343,8 +345,8 @@ class Repair:
             self.packets += 1
             self._last[index] = max(stamp, self._last[index] or 0)
         elif block.kind == blocks.INTERFACE:
-            # The lost blocks may have described an interface: then this interface would get its
-            # number.
+            # A lost block may have described an interface. Then this one would wrongly get that
+            # interface's number.
             if self.lost_bytes > self._lost_before:
                 raise damaged(name, block.offset, "interface-lost")
             self._parser.take(block.parsed)

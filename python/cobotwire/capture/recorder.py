@@ -157,7 +157,7 @@ class Recorder:
     def record(self, direction: Literal["sent", "received"], data: bytes, at: float) -> None:
         """Record a chunk that was read or written at ``at``, in ``time.monotonic()`` seconds.
 
-        After :meth:`close` this does nothing: another thread may still end its read.
+        After :meth:`close` this does nothing: another thread may still be finishing a read.
         """
         with self._lock:
             if self._ended:

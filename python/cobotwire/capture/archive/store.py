@@ -47,7 +47,7 @@ class Store(Protocol):
         ...
 
     def move(self, name: str, to: str) -> None:
-        """Give a file another name; a file that has it is replaced.
+        """Rename a file; replace a file that already has the new name.
 
         Raises:
             OutputError: the file cannot be moved.

@@ -26,7 +26,7 @@ class Input:
     Attributes:
         url: a path, an fsspec URL, or ``-``.
         size: the number of stored bytes; None if it is not known.
-        listed: whether it was found by a folder or a pattern; False: its own name was given.
+        listed: whether it was found in a folder or by a pattern; False: its own name was given.
     """
 
     url: str
@@ -35,7 +35,7 @@ class Input:
 
     @property
     def robot(self) -> str:
-        """The name of its robot: of a folder ``robot=NAME``, or else of the input."""
+        """The name of its robot: from a folder ``robot=NAME``, or else the name of the input."""
         url = self.url.replace(os.sep, "/")
         if found := _HIVE_ROBOT.search(url):
             return found[1]

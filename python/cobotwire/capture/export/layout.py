@@ -65,7 +65,7 @@ class Layout:
             yield self._path(batch, day.as_py() or NO_VALUE), part
 
     def without_keys(self, table: Any) -> Any:
-        """Return a table, or an empty one of a schema, without the columns that folders name."""
+        """Return a table without the columns whose values are in the names of folders."""
         dropped = [key for key in self._plan.partition if key == "robot"]
         return table.drop_columns(dropped) if dropped else table
 

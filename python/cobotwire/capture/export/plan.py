@@ -94,7 +94,7 @@ class ExportPlan:
                 hint = did_you_mean(value, allowed)
                 raise UsageError(argument, value, f"{', '.join(allowed)}{hint}")
         if self.wide and self.format == "mcap":
-            message = "wide columns are for tables: an MCAP message keeps a row in one field"
+            message = "wide columns are for tables: an MCAP message has no columns"
             raise UsageError("wide", self.wide, message=message)
         check_range(self.begin_ns, self.end_ns)
         check_commands(self.commands, self.editions)

@@ -35,7 +35,7 @@ class Source:
         self._tables: dict[str, MessageTables] = {}
 
     def batches(self, input: Input) -> Iterator[Batch]:
-        """Yield the chosen rows of an input. The end of a damaged recording is left out.
+        """Yield the chosen rows of an input; leave out what follows damage in a recording.
 
         An input that is empty, or in no known format, has no rows; the report names it.
 
@@ -82,8 +82,8 @@ class Source:
     ) -> Iterator[Batch]:
         """Yield the chosen rows of raw bytes that were decoded elsewhere, in one or more parts.
 
-        The counters of the last part count. ``first`` is whether it is the start of the input: a
-        divided input counts once.
+        Only the counters of the last part are added, because they cover all parts. ``first`` is
+        whether the first part is the start of the input: a divided input counts once.
 
         Raises:
             UsageError: the plan needs times, which raw bytes do not have.

@@ -13,7 +13,7 @@ def time_ns(text: str, argument: str) -> int:
     """Return a time as nanoseconds since 1970 (UTC).
 
     The time is ISO 8601, such as ``2026-11-23``, ``2026-11-23T14:30`` or
-    ``2026-11-23T14:30:00.5+01:00``. Without an offset it is UTC.
+    ``2026-11-23T14:30:00.5+01:00``. Without a time zone it is UTC.
 
     Raises:
         UsageError: it is not a time in ISO 8601.

@@ -67,8 +67,8 @@ def _parse(file: ForeignFile, line: Line, what: str, pattern: re.Pattern[str]) -
 def has_offsets(head: bytes) -> bool:
     """Return whether hex text that begins like this has offsets before its bytes.
 
-    The first one is a 0 with more digits than the bytes after it, or each one counts the bytes of
-    the lines before it.
+    Either the first offset is a 0 with more digits than the word after it, or each offset is the
+    number of bytes in the lines before it.
     """
     lines = [line.split() for line in head.replace(b":", b" ").splitlines() if line.strip()]
     # The end of the head may cut the last line.

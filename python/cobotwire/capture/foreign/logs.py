@@ -65,7 +65,7 @@ def _socat(file: ForeignFile) -> Iterator[Chunk]:
                 parts += 1
                 streams[direction] = f"part {parts}"
                 lost = begin - ends[direction]
-                what = f"lacks {counted(lost, 'byte')}" if lost > 0 else "goes back to bytes"
+                what = f"lacks {counted(lost, 'byte')}" if lost > 0 else "repeats bytes"
                 follows = f"before line {line.number}; what follows is part {parts}"
                 file.missing.append(f"{what} {direction} {follows}")
             ends[direction] = begin + size

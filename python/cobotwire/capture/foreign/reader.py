@@ -29,7 +29,7 @@ class Chunk(NamedTuple):
         data: the bytes.
         direction: their direction, if the format has one.
         time_ns: nanoseconds since 1970 (UTC), or since another start; None if there is no time.
-        stream: identifies one of several lines: a connection, a channel, an id.
+        stream: identifies one of several streams: a connection, a channel, a CAN id.
     """
 
     data: bytes
@@ -119,7 +119,7 @@ class Reader:
 
 
 def starts_with(pattern: bytes) -> Callable[[bytes], object]:
-    """Return a rule: the first line that is not blank begins like this."""
+    """Return a function that matches a pattern at the start of the first line with text."""
     return re.compile(rb"(?:\xef\xbb\xbf)?\s*" + pattern, re.IGNORECASE).match
 
 

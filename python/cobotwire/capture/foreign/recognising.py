@@ -20,11 +20,12 @@ from cobotwire.protocol.printable import printable
 # The number of bytes that decide about text. All of them are read, up to a byte that cannot be
 # text, so that the result does not depend on the chunks that a pipe returns.
 DETECT = 512
-# The number of bytes of a pcapng file, which state the link type, and of a magic number.
+# How many bytes decide about a pcapng file, since they state the link type; how many decide about
+# other binary files, by their magic number.
 DETECT_BLOCKS, DETECT_MAGIC = 4096, 4
 # Bytes of a format without times to pass on at a time.
 JOINED = 1 << 16
-# The names of columns that a message shows.
+# How many characters of the first line a message shows.
 SHOWN = 120
 _CONTROL = re.compile(r"[^\t\n\v\f\r\x20-\x7e\x80-\U0010ffff]")
 
@@ -76,10 +77,10 @@ OFFSETS = "looks like a dump with offsets before the bytes: write it with xxd or
 
 
 class ExportedInput(UnreadableInput):
-    """An error of an input file: an export wrote it, so it holds no bytes of a line."""
+    """An error of an input file: an export wrote it, so it holds no serial bytes."""
 
     def __init__(self, name: str) -> None:
-        super().__init__(name, f"was written by an export, and holds no bytes of a line; {RAW}")
+        super().__init__(name, f"was written by an export, and holds no serial bytes; {RAW}")
 
 
 class Recognised(NamedTuple):
@@ -87,7 +88,7 @@ class Recognised(NamedTuple):
 
     Attributes:
         reader: what reads it; None for raw bytes and for recordings.
-        recording: whether the blocks are those of a pcapng file, and not bytes of a line.
+        recording: whether the blocks are those of a pcapng file, and not serial bytes.
         blocks: the bytes.
         file: what was learnt about it; complete when all blocks are read.
     """
@@ -114,7 +115,7 @@ def recognise(
     ports: Sequence[int] = (),
     missing: list[str] | None = None,
 ) -> Recognised:
-    """Return the contents of a file as blocks of a recording, or as bytes of a line.
+    """Return the contents of a file as blocks of a recording, or as serial bytes.
 
     Args:
         blocks: the file.

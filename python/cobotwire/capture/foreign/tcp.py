@@ -14,7 +14,7 @@ from cobotwire.protocol.errors import UnreadableInput
 # The most segments that wait for a missing one; if more come, it counts as lost.
 MOST_WAITING = 64
 MOST_CONNECTIONS = 1000
-# Ports without an arm that an error names.
+# How many ports without an arm an error names.
 LISTED = 8
 SYN = 2
 _HALF, _MASK = 1 << 31, (1 << 32) - 1
