@@ -46,21 +46,21 @@ class NativeCodec:
         """Read a table.
 
         Raises:
-            AttributeError, TypeError, OverflowError: ``table`` is not a table, or something in it
-            has the wrong type or is far too large. ValueError: the table cannot be interpreted: the
-                header does not have 1 to 4 bytes, the check is unknown, the footer does not fit the
-                check, a variant is longer than LEN can say, a number is wider than its encoding
-                allows, a scale or bound is beyond what a double holds exactly, or a field's cases
-                do not fit.
+            AttributeError, TypeError, OverflowError: it is not a table, or something in it has the
+                wrong type or is far too large.
+            ValueError: it cannot be interpreted: the header does not have 1 to 4 bytes, the check
+                is unknown, the footer does not fit the check, a variant is longer than LEN can
+                state, a number is wider than its encoding allows, a double cannot hold a scale or
+                bound exactly, or a field's cases do not fit.
         """
 
     @property
     def name(self) -> Literal["native"]:
-        """Which of the two codecs it is."""
+        """The name of the codec."""
 
     @property
     def table(self) -> Table:
-        """The edition that it interprets."""
+        """The table of the edition."""
 
     def encode(
         self,
@@ -71,7 +71,7 @@ class NativeCodec:
         variant: int | None = None,
         address: int | None = None,
     ) -> bytes:
-        """Build one frame, of the first variant with that number of fields that allows ``values``.
+        """Build one frame with the first variant that has as many fields and allows ``values``.
 
         ``variant`` picks one by its index; ``address`` is only for formats with an address byte.
 
@@ -103,7 +103,7 @@ class NativeCodec:
         out: Scan | None = None,
         workers: int = 1,
     ) -> Scan:
-        """Return where the frames of a stream are; see the interface.
+        """Return the offsets of the frames and the noise in a stream; see the interface.
 
         Raises:
             BufferError: a memoryview or an array still uses ``out``.
@@ -194,15 +194,15 @@ class NativeFrame:
 
     @property
     def offset(self) -> int:
-        """Where it starts in the stream."""
+        """The offset of the frame in the stream."""
 
     @property
     def data(self) -> bytes:
-        """All of it, from header to check."""
+        """The whole frame, from header to check."""
 
     @property
     def command(self) -> int:
-        """Its command id."""
+        """The command id of the frame."""
 
     def decode(
         self, direction: Direction | None = None, *, of: str | None = None
@@ -219,7 +219,7 @@ class NativeFrame:
 
     @property
     def message(self) -> DecodedMessage:
-        """Its message: the first one that allows its values, requests first.
+        """The decoded message: the first one that allows the values, requests first.
 
         Raises:
             ProtocolError: as :meth:`decode`.
@@ -227,7 +227,7 @@ class NativeFrame:
 
     @property
     def values(self) -> tuple[Any, ...]:
-        """The values of its message, one for each field.
+        """The values of the message, one for each field.
 
         Raises:
             ProtocolError: as :meth:`decode`.
@@ -248,19 +248,19 @@ class NativeColumnReader:
         """Take bytes; return the rows that have become certain since the last call."""
 
     def flush(self) -> Columns:
-        """Reject an incomplete frame at the end; return the remaining rows."""
+        """Stop waiting for more bytes; return the remaining rows and noise."""
 
     @property
     def pending(self) -> int:
-        """The number of fed bytes not accounted for yet: fewer than the longest frame has."""
+        """The number of fed bytes that wait for more: fewer than the longest frame has."""
 
 @final
 class NativeCaptureReader:
     """Reads a pcapng recording, piece by piece, into columns with times.
 
-    ``codec_of`` is called at the first packet of each direction of an interface, with the name, the
-    description and the speed of the interface. An exception that it raises ends reading. While a
-    thread uses the reader, every use by another one raises UsageError and changes nothing.
+    ``codec_of`` is called with the name, the description and the speed of an interface when a
+    direction of that interface has its first packet; an exception that it raises ends reading.
+    While a thread uses the reader, every use by another one raises UsageError and changes nothing.
     """
 
     def __new__(

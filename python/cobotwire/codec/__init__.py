@@ -1,6 +1,7 @@
 """Choose the codec: the Rust codec if its binary can be loaded, else the Python reference.
 
-The binary is not loaded in a subinterpreter: its errors would have the classes of another one.
+The binary is not loaded in a subinterpreter: its errors would have the classes of another
+interpreter.
 
 The environment variable ``COBOTWIRE_CODEC`` (``reference`` or ``native``) forces one.
 """

@@ -23,7 +23,7 @@ class Layout:
         table: the edition.
         command: the command of the messages.
         direction: whether they are requests or replies.
-        shown: the variants that the table has room for.
+        shown: the variants whose rows the table can hold.
         raw: whether the numbers are raw values.
         wide: whether each number of a field has a column of its own.
     """
@@ -79,7 +79,7 @@ class Layout:
 def common_type(types: set[Any]) -> Any:
     """Return a type that can hold the values of each of ``types``, or None.
 
-    Fixed-size lists of several sizes become lists. Enums with several lists of names become texts.
+    Fixed-size lists of several sizes become lists. Enums with different names become texts.
     Numbers of several types get the larger type.
     """
     if len(types) == 1:

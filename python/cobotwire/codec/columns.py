@@ -257,7 +257,7 @@ class Columns(Sequence[Rows]):
         them occurred.
 
         Raises:
-            UsageError: there is no command or variant of that name, or several variants occurred.
+            UsageError: there is no such command or variant, or several variants occurred.
         """
         variants = self.table.command(command).variants(direction)
         legal = range(len(variants))

@@ -83,7 +83,7 @@ class ColumnReader(Protocol):
 
     @property
     def pending(self) -> int:
-        """The number of fed bytes not accounted for yet: fewer than the longest frame has."""
+        """The number of fed bytes that wait for more: fewer than the longest frame has."""
         ...
 
 

@@ -1,11 +1,12 @@
 """Divide a stream into segments that can be decoded on their own, and decode one of them.
 
 A scan has no state: what it finds from a position on depends only on the bytes from there on. So
-two scans that reach the same position agree from there on. A frame that begins before a cut ends at
-most the length of the longest frame after it. So the scan of the whole stream continues after the
-cut at one of a few positions. Scans from all of these meet at a position, which the scan of the
-whole stream then reaches too. A segment extends from the meeting point of one cut to that of the
-next one. To find a meeting point, only bytes after the cut are needed.
+two scans that reach the same position agree from there on. A frame that begins before a cut ends
+after it by less than the length of the longest frame. So the scan of the whole stream continues
+after the cut at one of a few positions, and it is not known at which. Scans that start at each of
+them meet at one position; the scan of the whole stream reaches it too. A segment extends from the
+meeting point of one cut to that of the next one. To find a meeting point, only bytes after the cut
+are needed.
 """
 
 from __future__ import annotations
@@ -20,8 +21,8 @@ from cobotwire.codec.interface import Codec, Listening
 from cobotwire.protocol.frame_index import longest_frame
 from cobotwire.protocol.table import Direction
 
-# Scans that have not agreed within this many bytes probably never will: such bytes are made on
-# purpose. Then the cut is ignored: the segment before it continues.
+# Scans that have not met within this many bytes probably never will; only bytes made on purpose
+# keep them apart for so long. Then the cut is ignored: the segment before it continues.
 PATIENCE = 1 << 16
 # Bytes that are read and decoded at once.
 CHUNK = 1 << 23

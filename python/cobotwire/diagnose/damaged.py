@@ -56,7 +56,7 @@ class DamagedFrames(FrameStarts):
         super().__init__(codec, listening)
         # Every LEN that is legal with an id, in any direction; for the id None, every legal LEN.
         self._lengths: dict[int | None, set[int]] = {}
-        # The frame does not show which of the commands that share an id it belongs to.
+        # All names of each id: if commands share an id, a damaged frame does not show which it is.
         self._all_names: dict[int, str] = {}
         for command in codec.table.commands:
             legal = {

@@ -20,7 +20,7 @@ class Recogniser:
         """Prepare for a stream of ``codec``; its framer listens to ``listening``."""
 
     def recognise(self, residue: Residue, at: int) -> Verdict:
-        """Return what starts at ``at``, with a byte that ``starts`` can begin with."""
+        """Return what starts at ``at``; a match of ``starts`` can begin with the byte there."""
         raise NotImplementedError
 
     def sent(self, data: bytes) -> None:

@@ -67,7 +67,7 @@ class ServoPacket(Finding):
         return f"servo bus: {self.example()}{doubt}"
 
     def example(self) -> str:
-        """Describe the packet without its bus."""
+        """Describe the packet, without the words ``servo bus``."""
         servo = "all servos" if self.servo == servo_bus().every else f"servo {self.servo}"
         if self.role == "status":
             where = "" if self.register is None else f" at {self._register_text()}"

@@ -16,7 +16,7 @@ _FLAGS |= {"false": False, "no": False, "off": False, "0": False}
 
 
 def parse(command: Command, words: Sequence[str]) -> dict[str, Any]:
-    """Return the arguments by name; words come in the order of the method or as ``name=value``.
+    """Return the arguments by name; words are in the method's order or written ``name=value``.
 
     A list is a word with commas, or as many words as it has numbers. The names choose the variant
     of the request. Arguments with a default may be left out. The text that follows a request is an
@@ -100,16 +100,14 @@ def parse_method(
 
 
 def _sizes(command: Command) -> dict[str, int]:
-    """Return the number of words that each argument takes: one, or the size of a fixed-size list.
-
-    0: the argument has to be named.
-    """
+    """Return how many words each argument takes: one, or the size of a fixed-size list."""
     fields = [field for variant in command.request for field in variant.fields]
     lists = {f.name: len(f.cases[0].numbers) for f in fields if f.many and not (f.sizes or f.each)}
     return {name: lists.get(name, 1) for name in command.argument_names}
 
 
 def _by_name(call: str, sizes: Mapping[str, int], words: Sequence[str]) -> dict[str, str]:
+    """Return the words of each argument; one of size 0 must be written ``name=value``."""
     arguments: dict[str, str] = {}
     for word in words:
         name, equals, value = word.partition("=")

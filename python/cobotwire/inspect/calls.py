@@ -104,7 +104,7 @@ def _command(edition: Edition, name: str, words: Sequence[str], address: int | s
         try:
             method(**arguments, ack_within=within)
         except ReplyTimeout:
-            # Older firmware sends none.
+            # Older firmware sends no acknowledgements.
             remark = f"sent; not acknowledged within {1000 * within:.0f} ms"
             return Done(None, remark, {"acknowledged": False})
         seconds = time.monotonic() - started

@@ -177,7 +177,7 @@ class Candidates:
 
 
 class JointLimit(NamedTuple):
-    """A query for the limit of a joint, and what it is in each edition."""
+    """A query for the limit of a joint, and that limit in each edition."""
 
     command: Command
     joint: int

@@ -172,7 +172,7 @@ def identify_by(
 
 
 def _first_queries(names: list[str]) -> Iterator[tuple[str, Command]]:
-    """Yield an edition, and a query to which every arm that knows it replies.
+    """Yield an edition and a query; an arm that knows the query always replies to it.
 
     It is the query of the power or, for arms without motors, that of the version.
     """

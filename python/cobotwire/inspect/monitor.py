@@ -112,7 +112,8 @@ class Monitor:
                 times.append(time.monotonic())
                 yield self._sample(started, times)
                 taken += 1
-                # Missed samples are not taken later, because the arm is busy enough.
+                # Missed samples are skipped: catching up would load an arm that is already too
+                # slow.
                 due = max(due + 1 / self._rate, time.monotonic())
                 if taken != count:
                     self._arm.listen(max(0.0, due - time.monotonic()))

@@ -31,7 +31,7 @@ class ReferenceColumnReader:
 
     @property
     def pending(self) -> int:
-        """The number of fed bytes that are not accounted for yet."""
+        """The number of fed bytes that wait for more."""
         with self._exclusively():
             return self._framer.pending
 

@@ -17,8 +17,8 @@ from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Role
 
 ROLES: tuple[Role, ...] = ("joints", "coordinates")
-# Two replies are this many usual intervals apart, and at least this many seconds, if there is a gap
-# between them. The curves of the studio (`studio/page/series.js`) have the same rule.
+# There is a gap between two replies if they are more than this many usual intervals and more than
+# this many seconds apart. The curves of the studio (`studio/page/series.js`) have the same rule.
 GAP_INTERVALS, GAP_SECONDS = 4, 1.0
 
 

@@ -44,11 +44,11 @@ class Copies:
         with suppress(AttributeError, OSError):
             fcntl.fcntl(descriptor, fcntl.F_SETPIPE_SZ, PIPE_SIZE)
         self._descriptor = descriptor
-        # Bytes without a copy that were not reported yet.
+        # How many bytes were dropped and not yet reported to the reader.
         self._dropped = 0
 
     def put(self, kind: Kind, data: bytes, time: float) -> None:
-        """Copy ``data``; if the reader is too slow, drop it, and count it for the reader."""
+        """Copy ``data``; if the reader is too slow, drop it, and report later how many bytes."""
         for start in range(0, len(data), PIECE):
             piece = data[start : start + PIECE]
             if self._dropped and self._write("dropped", b"%d" % self._dropped, time):

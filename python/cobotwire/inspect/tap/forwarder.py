@@ -64,7 +64,7 @@ class Forwarder:
         Raises:
             LinkError: the arm's port is gone.
         """
-        # Collecting garbage among all that was imported takes milliseconds.
+        # A garbage collection that visits all imported objects takes milliseconds.
         gc.freeze()
         while self._turn():
             pass
