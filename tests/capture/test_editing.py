@@ -225,7 +225,7 @@ def test_commands_choose_requests_and_replies(
 
 def test_chunks_cannot_be_cut_by_command(tmp_path: Path) -> None:
     source = recording(tmp_path / "in.pcapng", [Packet(1, "received", b"\xfe\xfe\x02", "bytes")])
-    with pytest.raises(UsageError, match="FE FE 02 is not whole frames"):
+    with pytest.raises(UsageError, match="FE FE 02 does not consist of whole frames"):
         cut(source, tmp_path / "out.pcapng", choose=by_command(recorded_codecs(), [], ["x"], False))
 
 

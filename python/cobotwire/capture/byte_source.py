@@ -112,7 +112,7 @@ def _read(
     notify: Callable[[str], None],
     ports: Sequence[int],
 ) -> ByteSource | CaptureReader:
-    # Imported here, because bytes in hex need nothing of it.
+    # Imported here, because hex arguments do not need it.
     from cobotwire.capture.block_file import BlockFile
     from cobotwire.capture.foreign.recognising import recognise
     from cobotwire.capture.reader import CaptureReader, read

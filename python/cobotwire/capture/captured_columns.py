@@ -1,4 +1,4 @@
-"""Hold the messages of a capture as columns: as in a raw stream, with times and directions."""
+"""Hold the messages of a capture as columns, with times and directions."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class StreamColumns:
         return TimedOffsets(self.rejected_time, self.columns.rejected)
 
     def captured(self, rows: Rows) -> CapturedRows:
-        """Return rows of ``columns`` with their times; other rows must be empty."""
+        """Return rows with their times; rows that are not in ``columns`` must be empty."""
         part = Part(self.interface, self.direction, len(rows))
         for found, time in zip(self.columns, self.times):
             if found is rows:

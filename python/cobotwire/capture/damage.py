@@ -20,7 +20,7 @@ _REASONS = {
     "no-interface": "damaged: the file does not describe interface {}",
     "no-time": "its packets have neither a time nor a direction",
     "many-interfaces": f"it describes more than {MOST_INTERFACES} interfaces",
-    "interface-lost": "damage before it makes the number of its interface ambiguous",
+    "interface-lost": "earlier damage makes the number of this interface ambiguous",
     "time-range": "columns cannot hold the time of a packet outside of the years 1678 to 2261",
 }
 

@@ -46,7 +46,7 @@ _LISTED = 20
 def _output(
     output: SourcePath, overwrite: bool, sources: Sequence[SourcePath]
 ) -> Iterator[Callable[[bytes], object]]:
-    """Yield a function that writes to a file; the file gets its name if no exception is raised."""
+    """Yield a function that writes to a file; an exception keeps it from getting its final name."""
     path = Path(output)
     for source in sources:
         if path.exists() and os.path.samefile(path, source):
@@ -160,8 +160,8 @@ def by_command(
         events = framer.feed(packet.data) + framer.flush()
         if packet.kind == "bytes" and any(isinstance(event, Noise) for event in events):
             message = (
-                f"the packet {packet.data[:16].hex(' ').upper()} is not whole frames, as in the "
-                "recordings of other programs: such a recording can only be cut by time"
+                f"the packet {packet.data[:16].hex(' ').upper()} does not consist of whole frames, "
+                "as usual in recordings of other programs: cut this one by time only"
             )
             raise UsageError("commands", packet.data, message=message)
         for event in events:
@@ -332,7 +332,7 @@ class Repair:
         """Check the next block; return what to write for it.
 
         Raises:
-            CaptureError: it is damaged, or damage before it makes it ambiguous.
+            CaptureError: the block is damaged, or earlier damage makes it ambiguous.
         """
         if block.kind == blocks.SECTION:
             self._marks, self._parser = self.marks(), PacketParser(name)

@@ -48,8 +48,8 @@ class NativeColumnsReader:
         if isinstance(native, NativeCodec):
             return native
         message = (
-            f"the replies of {codec.table.edition} carry no id, so their columns need the codec "
-            "of all interfaces: pass it instead of a function"
+            f"the replies of {codec.table.edition} carry no id, so their columns need one codec "
+            "for all interfaces: pass a codec instead of a function"
         )
         raise UsageError("codec", codec.table.edition, message=message)
 

@@ -51,7 +51,7 @@ class Times(NamedTuple):
         return (self.number - 1) * 1e9 / passed if passed > 0 else None
 
     def plus(self, other: Times | None) -> Times:
-        """Return the times of both."""
+        """Return the sum of both numbers, and the first and the last time of both."""
         if other is None:
             return self
         first, last = min(self.first_ns, other.first_ns), max(self.last_ns, other.last_ns)

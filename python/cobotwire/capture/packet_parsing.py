@@ -15,7 +15,7 @@ MICROSECONDS = 6
 OURS = "cobotwire"
 # The end of the application's name in a recording without times. All its packets have the time 0.
 UNTIMED = " (no times)"
-# The same in a recording with times from an unknown start, so that they have no date.
+# The end of that name in a recording with times from an unknown start, which have no date.
 UNDATED = " (no dates)"
 
 

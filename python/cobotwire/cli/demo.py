@@ -79,7 +79,7 @@ def _readings(traffic: Sequence[Traffic]) -> list[Reading | None]:
 
 
 def _worth_showing(readings: Sequence[Reading | None]) -> list[bool]:
-    """Return which messages to show: all but repeated queries between two other commands."""
+    """Return which messages to show: of repeated queries only the first ones and the last one."""
     shown = [False] * len(readings)
     kinds: dict[object, list[int]] = {}
     for index, reading in enumerate(readings):

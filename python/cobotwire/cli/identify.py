@@ -26,7 +26,7 @@ from cobotwire.protocol.json_values import as_json_value
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def identify(port: str, baudrate: int | None, timeout: float, as_json: bool) -> None:
-    """Find out which edition and firmware the arm at URL has, and show the evidence.
+    """Find out which edition and firmware the arm at URL has; print the evidence.
 
     A few harmless queries are sent: nothing moves, and nothing is set.
 

@@ -92,7 +92,7 @@ def _read_recording(capture: CaptureReader, interface: int, edition: str) -> tup
         what = f"only interface {interface}: {printable(capture.interfaces[interface].url)}"
         notify(f"drawing {what}; --interface chooses another of 0..{last}")
     if not capture.timed:
-        message = f"{capture.name} states no times, so it cannot be drawn over time"
+        message = f"{capture.name} has no times, so it cannot be drawn over time"
         raise UsageError("FILE", capture.name, message=message)
     codec = codec_of_interface(capture, interface, edition)
     return series_of_packets(packets, codec), codec

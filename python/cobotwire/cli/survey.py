@@ -136,7 +136,7 @@ def survey(
     subject.validate()
     if not (simulated or real_arm or (port is not None and leads_to_device(port))):
         simulated = True
-        where = "what replies at this port" if recorded is None else "what was recorded"
+        where = "what replies at this port" if recorded is None else "the recorded arm"
         click.echo(fold(NOT_SHOWN.format(where), err=True), err=True)
     to = None if address is None else parse_address(address)
     if allow_motion:

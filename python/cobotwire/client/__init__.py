@@ -1,4 +1,4 @@
-"""Run the session's exchange over a transport, for blocking programs and (``aio``) for asyncio."""
+"""Run a session over a transport: blocking, or in the modules ``aio*`` on asyncio."""
 
 from cobotwire.client.blocking import Client
 from cobotwire.session import Traffic

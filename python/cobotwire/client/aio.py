@@ -316,7 +316,7 @@ class AsyncClient:
     ) -> Result:
         """Send a request, wait for its reply, and return the reply's result.
 
-        ``longest`` limits the time for the reply, ``deadline`` that of the call, in seconds.
+        ``longest`` limits the time for the reply, ``deadline`` that for the whole call, in seconds.
         """
         encoded = self._encoder.encode_request(request)
         wait, retry = self._settings.timeout, self._settings.retry

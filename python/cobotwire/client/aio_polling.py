@@ -36,8 +36,8 @@ class AsyncPoller:
         """Send each request in turn, the first one at a given time.
 
         Returns:
-            A reading for each request; none if a request had no legal reply. None if the stream was
-            closed by then.
+            A reading for each request; an empty list if a request had no legal reply; None if the
+            stream was closed before.
 
         Raises:
             LinkError: the transport is gone.
@@ -71,7 +71,7 @@ class AsyncPoller:
         """Send a request at a given time, or at once if that has passed; wait until it is done.
 
         Returns:
-            None if the stream was closed by then.
+            The request; None if the stream was closed before it was sent.
         """
         self._poll, self._at, self._pending = poll, at, None
         self._finished = self._steps.loop.create_future()

@@ -17,7 +17,7 @@ from cobotwire.transport.interface import Transport
 
 # The pause between attempts to write on a full line.
 FULL_SECONDS = 0.002
-# A timer that is late by less than this is not set again.
+# A timer that is set for a time up to this much too late stays as it is.
 TIMER_SLACK = 0.0005
 
 

@@ -104,7 +104,7 @@ class EndSigns:
     """Collects messages of a device that can mean the end of a motion.
 
     Attributes:
-        acked: whether a motion was acknowledged since this was last False.
+        acked: whether an acknowledgement of a motion waits for :meth:`next` to return it.
         queue: the events of ended motions; None if the edition has no such event.
     """
 

@@ -16,7 +16,7 @@ class ReportedFirmware:
         self.version: float | None = None
 
     def result(self, pending: Pending) -> dict[str, Any]:
-        """Return the fields of a reply, or raise its error, which also says what firmware it needs.
+        """Return the fields of a reply, or raise its error; add the firmware that is needed to it.
 
         Raises:
             CobotwireError: the reason why there is no reply.
@@ -35,7 +35,7 @@ class ReportedFirmware:
         return fields
 
     def needs(self, command: Command) -> str:
-        """Return which firmware a command needs and the arm lacks; empty: none, as far as known."""
+        """Return which firmware a command needs and the arm lacks; empty if none is known."""
         stated, version = command.firmware, self.version
         if stated is None or version is None:
             return ""

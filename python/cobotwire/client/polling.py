@@ -33,8 +33,8 @@ class Poller:
         """Send each request in turn, the first one at a given time.
 
         Returns:
-            A reading for each request; none if a request had no legal reply. None if the stream was
-            closed by then.
+            A reading for each request; an empty list if a request had no legal reply; None if the
+            stream was closed before.
 
         Raises:
             LinkError: the transport is gone.

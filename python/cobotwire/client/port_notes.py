@@ -138,7 +138,7 @@ def _late(request: bytes, until: float, written_at: float) -> LateFrame:
 
 
 def _frame(text: str) -> bytes:
-    """Return a request, or what is known of one that was cut."""
+    """Return the bytes of a request, or the known bytes of one that was cut."""
     frame = bytes.fromhex(text)
     if not 0 < len(frame) <= 300:
         raise ValueError("no frame has this size")

@@ -98,7 +98,7 @@ class Steps:
     def turn(self, longest: float, ends_by: float = inf) -> None:
         """Read once, let time pass, and send the request that is next; this thread leads.
 
-        Its caller waits no longer than until ``ends_by``.
+        The caller waits until ``ends_by`` at the latest.
         """
         with self.reading:
             self.leading.count_turn()

@@ -72,7 +72,7 @@ class TrafficListeners:
     def sent(self, align: bytes, request: bytes) -> None:
         """Report what was written: fill bytes, if any, and a request with its text.
 
-        They are two events, so that listeners get a frame.
+        They are reported separately, so that listeners get a whole frame.
         """
         if align:
             self._sent(align)

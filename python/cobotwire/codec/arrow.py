@@ -93,7 +93,7 @@ def times(nanoseconds: Any) -> Any:
 
 
 def repeated(text: str, choices: Sequence[str], rows: int) -> Any:
-    """Return a dictionary column that has the same text in all rows, which is one of ``choices``.
+    """Return a dictionary column with the same text in all rows, one of ``choices``.
 
     Tables of different texts have the same type if they have the same choices.
     """

@@ -32,8 +32,8 @@ LARGEST = 2**31 - 1
 def cells(field: Field, column: memoryview, rows: int, part: int | None = None) -> Any:
     """Return a field's column as an array; with ``part``, one of its numbers or texts.
 
-    Floats, raw values, bytes, and texts without padding stay where they are, unless they are a part
-    of a field. An array has room for ``LARGEST`` bytes of UTF-8.
+    Floats, raw values, bytes, and texts without padding share the memory of the column, unless they
+    are a part of a field. An array has room for ``LARGEST`` bytes of UTF-8.
     """
     if field.kind == "bytes":
         return _spans(pa.binary(), column, rows, *field.dimensions)
@@ -75,7 +75,7 @@ def choices_in(field: Field, part: int | None) -> dict[str, int]:
 
 
 def named(numbers: Any, choices: Mapping[str, int]) -> Any:
-    """Return the names of numbers as a dictionary array; each is the value of one of the names."""
+    """Return the names of numbers as a dictionary array; ``choices`` holds every number."""
     values = pa.array([*choices.values()], numbers.type)
     index = pc.index_in(numbers, values).cast(pa.int8() if len(choices) < 128 else pa.int32())
     return pa.DictionaryArray.from_arrays(index, pa.array([*choices], pa.utf8()))

@@ -91,7 +91,7 @@ class Divider:
         """
         reach = self._reach
         window = self._stream.read(cut, self._patience + 2 * reach)
-        # A frame that begins before the cut ends at one of these, at most.
+        # A frame that begins before the cut, and ends after it, ends at one of these.
         positions = list(range(min(reach, len(window) + 1)))
         heapify(positions)
         while True:

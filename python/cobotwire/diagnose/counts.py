@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Framed(Protocol):
-    """A framer, or an object that has one."""
+    """A framer, or an object with the counters of one."""
 
     @property
     def counters(self) -> Counters:

@@ -27,8 +27,8 @@ _SLACK = (0, -1, 1, -2, 2)
 class DamagedFrame(Finding):
     """The header and id of a command without a legal frame.
 
-    ``command`` names every command with the id. Both are None if the frame is cut before its id, or
-    if it may be a reply that carries none.
+    ``command`` names every command with the id. Command and id are None if the frame is cut before
+    its id, or if it may be a reply that carries no id.
     """
 
     command: str | None

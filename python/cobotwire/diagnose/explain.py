@@ -154,7 +154,7 @@ def format_message(message: DecodedMessage) -> str:
 
 
 def _format_bits(field: Field, numbers: list[tuple[Number, Any]]) -> str:
-    """Return the named bits of a word: a flag only if it is set, ``(ready, level=5)``."""
+    """Return the named numbers of a bit field; a flag only if it is set: ``(ready, level=5)``."""
     parts = [
         number.name if number.kind == "flag" else f"{number.name}={format_value(field, number, v)}"
         for number, v in numbers

@@ -62,7 +62,7 @@ class Finding:
 
     @property
     def failure(self) -> str | None:
-        """Return why the controller failed, "" if unknown; None if it is no sign of a failure."""
+        """Return why the controller failed, "" if unknown; None: this is no sign of a failure."""
         return None
 
     @property

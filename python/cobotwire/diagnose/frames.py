@@ -48,7 +48,7 @@ class OppositeFrame(Finding):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UnlistedFrame(Finding):
-    """A complete frame with an id that the edition lacks in that direction.
+    """A complete frame with an id that the edition lacks in the direction of the stream.
 
     ``command`` is the name of the id in the other direction; None if the edition lacks it there.
     """

@@ -1,9 +1,9 @@
 """Find the mistake that explains contradictory readings, and the mistakes that they exclude.
 
-A hypothesis is a mistake of the edition, such as tenths taken for hundredths, and the correction of
-the readings. It explains them if all relations of the corrected readings hold. If the relations
-hold for the edition as it is, and each hypothesis about an aspect breaks one, that aspect is
-confirmed.
+A hypothesis is a possible mistake of the edition, such as tenths taken for hundredths, with the
+correction of the readings. It explains the readings if all relations hold once they are corrected.
+If the relations hold for the edition as it is, and each hypothesis about an aspect breaks one, that
+aspect is confirmed.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ def doubts(table: Table, results: Mapping[str, Any]) -> list[str]:
 
 
 class CrossChecks:
-    """The relations of an edition, and what readings of an arm show by them."""
+    """Checks readings of an arm by the relations that the edition states."""
 
     def __init__(self, table: Table) -> None:
         self._numbers = {source.key: source.numbers for source in sources(table)}

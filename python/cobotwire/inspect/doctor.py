@@ -26,7 +26,7 @@ QUIET_SECONDS = 0.3
 SILENT = 3
 # An adapter that holds replies back takes 16 ms or more; otherwise a round trip is below 13 ms.
 SLOW_SECONDS = 0.0155
-# The time that an arm has for a query by which its edition is recognised, in seconds.
+# How many seconds an arm has to reply to a query that shows its edition.
 EDITION_SECONDS = 0.5
 ROLES: tuple[Role, ...] = (*readiness.ROLES, "moving", "joints", "coordinates")
 
@@ -79,7 +79,7 @@ class Report:
         return not any(problem.serious for problem in self.problems)
 
     def add_port_failure(self, error: LinkError) -> None:
-        """Insert as the first problem that the port could not be opened or disappeared."""
+        """Insert a first problem: the port could not be opened, or it disappeared."""
         self.problems.insert(0, Problem("link", str(error), advice.PORT if self.kind else ""))
 
 

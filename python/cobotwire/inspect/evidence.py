@@ -86,7 +86,7 @@ def own_query(table: Table, others: Iterable[Table]) -> Command | None:
 
 
 class JointCount(NamedTuple):
-    """A query for the angles of all joints, in an edition with one number of joints.
+    """A query for the angles of all joints, for the editions with one and the same joint count.
 
     Attributes:
         edition: the edition with which the query is sent and the reply is read.

@@ -48,7 +48,7 @@ Ask = Callable[..., Evidence]
 
 
 class Identification(NamedTuple):
-    """What an arm is, and by what evidence.
+    """What an arm is, and the evidence for it.
 
     Attributes:
         url: the port.

@@ -66,7 +66,7 @@ def monitored(table: Table) -> list[Command]:
 
 
 def check_rate(rate: float) -> float:
-    """Return a number of samples a second.
+    """Check a number of samples a second, and return it.
 
     Raises:
         UsageError: it is not allowed.
@@ -168,7 +168,8 @@ class FollowingMonitor:
         self._values = {command: (-inf, None) for command in monitored(followed.table)}
         self._times: deque[float] = deque(maxlen=WINDOW)
         self._replied = {each.id for each in followed.table.commands if each.requires_reply}
-        # The ids of requests without a reply yet; how many requests were repeated without one.
+        # The ids of requests that have no reply yet; how many requests were followed by the next
+        # one of their id before a reply came.
         self._open: set[int] = set()
         self._unanswered = 0
         self._error = ""

@@ -47,7 +47,7 @@ def check_ready(arm: Client, name: str, url: str) -> None:
     If only some queries get no reply, as from firmware that lacks one, their states are not known.
 
     Raises:
-        ArmNotReady: it does not: it has no power, is paused, or reports an error.
+        ArmNotReady: the arm has no power, is paused, or reports an error.
         ReplyTimeout: the arm did not reply to the first query.
     """
     states: dict[Role, Any] = {}

@@ -20,8 +20,8 @@ from cobotwire.protocol.numbers import Number
 from cobotwire.protocol.roles import row_index
 from cobotwire.protocol.table import Command, Field, Table
 
-# The command, and the part of it as facts name it: ``reply.FIELD`` or ``request.ARGUMENT``. The row
-# of a query with the argument joint has a number for each joint.
+# The name of a reading, as in facts: the command, and ``reply.FIELD`` or ``request.ARGUMENT``. The
+# row of a query with the argument joint has a number for each joint.
 Key = tuple[str, str]
 Row = tuple[float, ...]
 # The readings at one time, while the arm rests.
@@ -35,7 +35,7 @@ LINKS_APART, LINKS_TURNED = 15.0, 5.0
 BEYOND, LIMIT_APART = 5.0, 1.0
 # The plausible readings of a robot on a desk, by unit; a part that is not connected reads 0.
 PLAUSIBLE = {"volt": (3.0, 60.0), "degree_celsius": (1.0, 110.0), "percent": (0.0, 110.0)}
-# If one of these states is not its first choice, the coordinates are not those of the flange.
+# Unless each of these states has its first choice, the coordinates are not those of the flange.
 FRAMES = ("reference_frame", "end_type")
 
 
@@ -69,8 +69,8 @@ class Relation(NamedTuple):
     """A relation that readings have if the edition is right.
 
     ``holds`` takes the rows of the ``keys``, then those of ``conditions``, which it does not
-    test. ``independent`` is whether the readings differ in kind; then it also finds a mistake
-    that all readings of one kind share. If the relation does not hold and no known mistake
+    test. ``independent`` is whether the readings differ in kind; then the relation also finds a
+    mistake that all readings of one kind share. If the relation does not hold and no known mistake
     explains why, ``aspect`` is contradicted. A relation that is not ``exact`` gives only a range,
     which finds no wrong sign and no wrong order.
     """

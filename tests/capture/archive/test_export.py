@@ -133,7 +133,10 @@ def test_bytes_appended_during_the_export_are_not_exported(tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("wrong", "text"),
     [
-        ({"output": "all.parquet", "commands": ("get_angles",)}, "one for each piece: give a fol"),
+        (
+            {"output": "all.parquet", "commands": ("get_angles",)},
+            "each piece needs a file: give a fol",
+        ),
         ({"begin_ns": 1}, "bytes without times"),
         ({"piece_bytes": 0}, "piece_bytes is 0; allowed: 1 and more"),
         ({"inputs": ["-"]}, "standard input, which several workers cannot read"),

@@ -31,7 +31,7 @@ RUNNING = "running"
 
 
 class Attempted(NamedTuple):
-    """What an attempt wrote: its folder in the store, and its report with paths from there."""
+    """What an attempt wrote: a folder in the store, and a report with paths relative to it."""
 
     folder: str
     report: Report
@@ -100,7 +100,7 @@ def _check(plan: ExportPlan, inputs: Inputs) -> None:
     format = FORMATS[plan.format]
     format.check_installed()
     if Layout(plan, format).single:
-        message = f"{plan.output} is one file, but an archive has one for each piece: give a folder"
+        message = f"{plan.output} is one file, but each piece needs a file: give a folder"
         raise UsageError("output", plan.output, message=message)
     if any(input.url == STDIN for input in inputs.files):
         message = "- is standard input, which several workers cannot read: store it first"
@@ -113,7 +113,7 @@ def _hidden_folder(plan: ExportPlan, store: Store) -> Iterator[str]:
     found = store.names()
     if found and not plan.overwrite:
         message = (
-            f"{plan.output} already holds {found[0]}: rows of both would mix; give an empty "
+            f"{plan.output} already holds {found[0]}: old and new rows would mix; give an empty "
             "folder, or --overwrite to replace the files of an earlier export"
         )
         raise UsageError("output", plan.output, message=message)

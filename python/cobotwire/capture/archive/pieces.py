@@ -25,7 +25,7 @@ class Piece(NamedTuple):
     Attributes:
         input: the input.
         number: the number of the part, from 0 on.
-        size: the size of all parts but the last, in bytes; 0 if the input is not divided.
+        size: the size of each part except the last, in bytes; 0 if the input is not divided.
     """
 
     input: Input
@@ -42,7 +42,8 @@ class Piece(NamedTuple):
         """Yield the chosen rows, and count them in the report of the source.
 
         Raises:
-            UsageError, LinkError: as :meth:`Source.batches`; the input has become shorter.
+            UsageError: as :meth:`Source.batches`.
+            LinkError: as :meth:`Source.batches`, or the input has become shorter.
         """
         if not self.size:
             yield from source.batches(self.input)

@@ -27,7 +27,7 @@ class InputStream:
 
     Attributes:
         name: the name of the input, for messages.
-        truncated: why a line of the input cannot be read; empty if all so far can.
+        truncated: why the input cannot be read on; empty if it could be read so far.
         found: its format.
     """
 
@@ -40,7 +40,7 @@ class InputStream:
             input: the input.
             progress: gets the number of stored bytes of each read.
             format: see :func:`~cobotwire.capture.foreign.recognising.recognise`.
-            ports: see there.
+            ports: the TCP ports of arms; see ``recognise`` too.
 
         Raises:
             UsageError: it cannot be opened, or a package is missing.

@@ -33,7 +33,7 @@ class Editions(Protocol):
     """Finds editions for an export. Implementations can be pickled, for other processes."""
 
     def codec(self, name: str) -> Codec:
-        """Return the codec of an edition, or of the default edition if the name is unknown."""
+        """Return the codec of an edition, or of the default edition if the name is empty."""
         ...
 
     def forward(self, name: str) -> Forward | None:

@@ -25,7 +25,7 @@ class Report:
 
     Attributes:
         inputs: how many inputs there were.
-        bytes: the bytes of the streams in them, uncompressed, without what a recording adds.
+        bytes: the serial bytes in them, uncompressed, without the overhead of recordings.
         rows: the rows that were written, by message, such as ``get_angles.reply``.
         noise: bytes that belong to no frame, by reason.
         rejected: legal frames with a value that the edition does not allow.

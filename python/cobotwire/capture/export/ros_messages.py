@@ -100,7 +100,7 @@ def serialised(kind: str, message: Message) -> bytes:
 
 
 def header(time_ns: int, frame: str = "") -> Message:
-    """Return the header of a message; a time beyond the range of ROS (2038) becomes its last."""
+    """Return the header of a message; a time after the last of ROS (2038) becomes the last."""
     sec, nanosec = divmod(time_ns, 1_000_000_000)
     return {"stamp": {"sec": min(sec, _LATEST), "nanosec": nanosec}, "frame_id": frame}
 

@@ -38,7 +38,7 @@ def _saleae(file: ForeignFile) -> Iterator[Chunk]:
     damaged = 0
     for line in lines:
         row = _fields(file, line)
-        # A last column that is empty may be missing.
+        # A row may lack its last column, if that is empty.
         row += [""] * (len(columns) - len(row))
         if "type" in of and row[of["type"]] != "data":
             file.reject(line, "a row of type data: an export of an 'Async Serial' analyser only")
@@ -96,7 +96,7 @@ def _sigrok(file: ForeignFile) -> Iterator[Chunk]:
         elif not (found and ((kind or "data").lower() != "data" or _NOT_DATA.fullmatch(text))):
             file.reject(line, "an annotation such as 'UART: RX data: FE' (data format hex)")
     if problems:
-        file.notes.append(f"the decoder of the line reported {counted(problems, 'error')}")
+        file.notes.append(f"the UART decoder reported {counted(problems, 'error')}")
 
 
 READERS = (

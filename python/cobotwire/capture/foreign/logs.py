@@ -178,7 +178,7 @@ READERS = (
             rb"[<>] [0-9/]{10} [0-9:.]+  length=[0-9]+ .*\n [0-9a-f]{2}(?:[ \r\n]|$)"
         ),
         _socat,
-        remark=f"{LOCAL}; > counts as sent",
+        remark=f"{LOCAL}; > is taken as sent",
     ),
     Reader(
         "pymycobot",

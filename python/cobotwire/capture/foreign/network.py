@@ -21,7 +21,7 @@ from cobotwire.capture.foreign.tcp import Connections, Segment
 from cobotwire.capture.packet_parsing import PacketParser
 from cobotwire.protocol.errors import CaptureError, UnreadableInput
 
-# The first four bytes of a classic file: its byte order, and nanoseconds in its unit of time.
+# By the first four bytes of a classic file: its byte order, and the nanoseconds of its time unit.
 _ORDERS = {
     struct.pack(order + "I", magic): (order, unit)
     for order in "<>"

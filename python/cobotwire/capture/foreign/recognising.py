@@ -23,7 +23,7 @@ DETECT = 512
 # How many bytes decide about a pcapng file, since they state the link type; how many decide about
 # other binary files, by their magic number.
 DETECT_BLOCKS, DETECT_MAGIC = 4096, 4
-# Bytes of a format without times to pass on at a time.
+# How many bytes to pass on at once, if the format has no times.
 JOINED = 1 << 16
 # How many characters of the first line a message shows.
 SHOWN = 120
@@ -185,7 +185,7 @@ def _reader_of(head: bytes, name: str) -> Reader | None:
         found = [reader for reader in TEXTS if reader.start(head)]
         if not found and is_hex(head, cut=True):
             if dumps.has_offsets(head):
-                raise UnreadableInput(name, f"{OFFSETS}; {RAW}, --hex all digits")
+                raise UnreadableInput(name, f"{OFFSETS}; {RAW}, --hex decodes all digits")
             found = [HEX]
     if len(found) > 1:
         what = " and ".join(reader.what for reader in found)
@@ -202,7 +202,7 @@ def _reader_of(head: bytes, name: str) -> Reader | None:
 
 
 def _unknown_text(head: bytes) -> str:
-    """Return what a text looks like that no reader knows."""
+    """Describe a text that no reader knows."""
     first = head.decode("utf-8", "replace").strip().partition("\n")[0].strip()
     columns = [each.strip(' "') for each in first.split(",")]
     if len(columns) > 1 and all(columns):

@@ -14,7 +14,7 @@ from cobotwire.capture.writer import CaptureWriter
 from cobotwire.protocol.errors import UnreadableInput
 
 LATEST = (1 << 63) - 1
-# An earlier time, in nanoseconds since 1970, is not a date.
+# An earlier time, in nanoseconds since 1970, is not taken as a date.
 DATED = 10**18
 
 

@@ -77,7 +77,7 @@ def _pieces(item: Item) -> str:
 
 
 def byte_by_byte(reader: FrameReader, table: Table, paint: Paint | None) -> Format:
-    """Return a formatter: each part of a frame on a line; for noise, why it is not a frame."""
+    """Return a formatter: a line for each byte of a frame; for noise, why it is not a frame."""
 
     def format(item: Item) -> str:
         readings = reader.read(item.data)

@@ -26,8 +26,8 @@ def notify(text: str) -> None:
 
 
 def open_recording(path: str) -> CaptureReader:
-    """Open a recording; if another program made it, print how it is read."""
-    # Imported here, because bytes in hex need nothing of it.
+    """Open a recording, or what another program recorded; say how the latter is read."""
+    # Imported here, because hex arguments do not need it.
     from cobotwire.capture import read
 
     capture = read(path)

@@ -52,7 +52,7 @@ NO_REPLY = "no reply: "
 class Lacking:
     """What a simulated arm declares as unsupported, such as coordinates of an unknown geometry.
 
-    ``reasons`` maps each of these commands to the reason that the arm states.
+    ``reasons`` maps the name of each such command to the reason that the arm states.
     """
 
     def __init__(self, table: Table) -> None:

@@ -2,7 +2,8 @@
 
 A frame stands at position i if the header is there, LEN is legal for CMD, and the check is right.
 The first byte that contradicts a candidate rejects it. The scan then continues at i + 1, and never
-skips the bytes that a false header claimed. A candidate that more bytes could complete waits.
+skips the bytes that the LEN of a false header covers. A candidate that more bytes could complete
+waits.
 """
 
 from __future__ import annotations

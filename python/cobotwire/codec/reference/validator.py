@@ -71,7 +71,7 @@ class Validator:
         return self.heading_of(rest) if len(rest) >= frame.head_size else "truncated"
 
     def _reject_part(self, part: FixedPart, rest: bytes) -> NoiseReason | None:
-        """Return why a fixed part by itself is illegal; None if it is legal, or has not come."""
+        """Return why a fixed part by itself is illegal; None if it is legal or incomplete."""
         frame, size = self.frame, len(rest)
         if part == "address":
             at = frame.address_at

@@ -10,7 +10,7 @@ from cobotwire.editions import Edition
 from cobotwire.inspect.plot.pictures import draw_pose
 from cobotwire.simulator import MemoryTransport, RunningClock, SimulatedArm
 
-# The arm replies at once.
+# A simulated arm replies at once.
 REPLY_SECONDS = 0.05
 
 

@@ -25,7 +25,7 @@ PIPE_SIZE = 1 << 20
 
 
 class Copy(NamedTuple):
-    """What the forwarder did.
+    """A note of what the forwarder did.
 
     ``sent`` was written to the arm and ``received`` read from it; ``held`` was not forwarded;
     ``note`` is a text; ``dropped`` is the number of bytes that were not copied.

@@ -35,7 +35,7 @@ def check_pollable(arm: OpenedTransport) -> int:
 
 
 class Forwarder:
-    """Forwards until :meth:`stop` or until the arm's port is gone.
+    """Forwards until a byte is written to ``stopper``, or until the arm's port is gone.
 
     Without a guard every byte is forwarded as soon as it is read. While no program has the port
     open, bytes from the arm are copied but not delivered, as on a closed serial port.

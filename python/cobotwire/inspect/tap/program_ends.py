@@ -55,7 +55,7 @@ class PtyEnd:
             return b""
 
     def write(self, data: bytes) -> int:
-        """Return how many bytes were taken. All are lost while no program has it open."""
+        """Return how many bytes were taken: all, and they are lost, if no program has it open."""
         try:
             return len(data) if self.descriptor is None else os.write(self._pty.master, data)
         except BlockingIOError:
@@ -69,7 +69,7 @@ class PtyEnd:
 
 
 class TcpEnd:
-    """A TCP port for one program at a time, as :class:`PtyEnd`; further ones are disconnected."""
+    """A TCP port, used as :class:`PtyEnd`, for one program; others are disconnected meanwhile."""
 
     def __init__(self, host: str, port: int) -> None:
         """Listen; raise as :func:`cobotwire.simulator.tcp.listen`."""
@@ -95,7 +95,7 @@ class TcpEnd:
         return f"a program connected from {address[0]}", True
 
     def read(self) -> bytes | None:
-        """Receive."""
+        """Return what the program sent; see :meth:`PtyEnd.read`."""
         data = b""
         try:
             data = self._client.recv(READ_SIZE) if self._client else b""

@@ -15,7 +15,7 @@ class Sink(Protocol):
     """Writes tables into one open file."""
 
     def write(self, batches: list[Batch]) -> None:
-        """Append rows; the rows of one call become one block of the file, where it has blocks.
+        """Append rows; the rows of one call become one block, if the format has blocks.
 
         If the format has a file for each message, all batches have the same schema.
         """

@@ -36,7 +36,7 @@ def open_sink(file: BinaryIO, schema: Any, plan: ExportPlan) -> ArrowSink:
 
 
 def without_dictionaries(schema: Any) -> Any:
-    """Return a schema with plain values: an IPC file has one dictionary for all its batches."""
+    """Return a schema with plain values: all batches of an IPC file must share one dictionary."""
     fields = [
         field.with_type(field.type.value_type) if pa.types.is_dictionary(field.type) else field
         for field in schema
