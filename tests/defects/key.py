@@ -14,7 +14,7 @@ from cobotwire.conformance import Report
 HERE = Path(__file__).parent
 # The subjects, each with its own file.
 SUBJECTS = ("arm", "closed_loop", "two_arms", "firmware", "server", "client", "c_client")
-# A defect of the line as a whole: the message may be about any command.
+# A defect of the transport as a whole: the message may be about any command.
 ANY = "*"
 
 

@@ -68,7 +68,7 @@ class Exchange(NamedTuple):
 class Result:
     """The verdict of one test case on one command.
 
-    ``command`` is empty if the test case is about the line as a whole. ``case`` is the id of the
+    ``command`` is empty if the test case is about the transport as a whole. ``case`` is the id of the
     test case, ``source`` where the requirement is stated (``spec/commands/motion.yaml:12``),
     ``reason`` a sentence that states what was expected and received. ``further`` has the reasons
     of later failures of the test case on the command; ``reason`` says how many there were.

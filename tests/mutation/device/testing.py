@@ -23,7 +23,7 @@ QUERY_REPLIED = "query-replied"
 
 
 class Complaint(NamedTuple):
-    """A test case that a device fails on a command, or on the line as a whole, and why."""
+    """A test case that a device fails on a command, or on the transport as a whole, and why."""
 
     command: str
     case: str

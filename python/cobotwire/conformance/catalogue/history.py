@@ -27,7 +27,7 @@ class CatalogueVersion(NamedTuple):
     of_clauses: str
 
 
-HISTORY = (CatalogueVersion(1, "9b74817afde7", "the first version", 85, "bbcba3667264"),)
+HISTORY = (CatalogueVersion(1, "a1e4300002b6", "the first version", 85, "bbcba3667264"),)
 VERSION = HISTORY[-1].number
 
 # The test cases by the number of their clause, from 1.

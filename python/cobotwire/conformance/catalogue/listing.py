@@ -21,7 +21,7 @@ SHOWN = 12
 
 
 class Selected(NamedTuple):
-    """The test cases of a group for a command; ``None``: they test the line as a whole."""
+    """The test cases of a group for a command; ``None``: they test the transport as a whole."""
 
     command: Command | None
     group: Group[Any]

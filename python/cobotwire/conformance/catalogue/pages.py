@@ -83,7 +83,7 @@ def _edition(name: str) -> str:
     text += _table("commands", "groups of test cases, with their permissions")
     tests: dict[str, list[str]] = {}
     for each in every:
-        command = f"`{each.command.name}`" if each.command else "the line"
+        command = f"`{each.command.name}`" if each.command else "(transport)"
         tests.setdefault(command, []).append(_tested(each))
     commands: dict[str, list[str]] = {}
     for command, groups in tests.items():

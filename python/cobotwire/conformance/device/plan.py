@@ -13,7 +13,7 @@ from cobotwire.protocol.table import Command
 
 
 class Step(NamedTuple):
-    """A group and the command that it runs for; None: the line as a whole."""
+    """A group and the command that it runs for; None: the transport as a whole."""
 
     group: Group[Body]
     command: Command | None
@@ -21,7 +21,7 @@ class Step(NamedTuple):
     @property
     def name(self) -> str:
         """The command and the group, for messages."""
-        return f"{self.command.name if self.command else 'the line'}: {self.group.name}"
+        return f"{self.command.name if self.command else '(transport)'}: {self.group.name}"
 
     @property
     def place(self) -> tuple[str, str]:

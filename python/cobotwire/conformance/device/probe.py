@@ -102,7 +102,7 @@ class Probe:
         return connection.between(self._start, connection.mark, EVIDENCE)
 
 
-# Exercises the test cases of a group on one command, or on the line as a whole.
+# Exercises the test cases of a group on one command, or on the transport as a whole.
 Body = Callable[[Probe], None]
 Found = TypeVar("Found")
 FoundBody = Callable[[Probe, Found], None]

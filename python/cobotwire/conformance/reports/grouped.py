@@ -19,7 +19,7 @@ ARGUMENTS = re.compile(r"\([^()]*\)|\[[^\[\]]*\]|\{[^{}]*\}")
 QUESTION = re.compile(r"^\S+/\S+: ")
 ANSWER = re.compile(r"but the answer was (\S+) .*")
 
-# The command, which is empty for the line as a whole, and the test case.
+# The command, which is empty for the transport as a whole, and the test case.
 CellKey = tuple[str, str]
 
 
@@ -38,7 +38,7 @@ def matrix(report: Report) -> dict[CellKey, Result]:
 
 
 def rows(cells: Iterable[CellKey]) -> list[str]:
-    """Return the commands of a matrix; the line comes last."""
+    """Return the commands of a matrix; the transport comes last."""
     return sorted(dict.fromkeys(command for command, _ in cells), key=lambda name: name == "")
 
 
@@ -48,8 +48,8 @@ def columns(cells: Iterable[CellKey]) -> list[str]:
 
 
 def title_of(command: str) -> str:
-    """Return a command's name; an empty one means the line as a whole."""
-    return command or "the line"
+    """Return a command's name; an empty one means the transport as a whole."""
+    return command or "(transport)"
 
 
 def by_cause(results: Iterable[Result]) -> list[list[Result]]:

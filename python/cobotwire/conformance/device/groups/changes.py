@@ -110,5 +110,5 @@ ALL_ACKNOWLEDGED = Group(
     (ALIKE,),
     _all_acknowledged,
     sends="Nothing: the acknowledgements of the whole run are compared.",
-    subject="the line as a whole, if the edition has acknowledgements",
+    subject="the transport as a whole, if the edition has acknowledgements",
 )

@@ -303,5 +303,5 @@ UNKNOWN_IDS = Group(
     _unknown_ids,
     permission=MALFORMED,
     sends="Frames with ids that the edition lacks, with and without data.",
-    subject="the line as a whole",
+    subject="the transport as a whole",
 )

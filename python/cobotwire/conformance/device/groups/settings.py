@@ -261,5 +261,5 @@ COUPLING = Group(
     _others_stay,
     permission=frozenset({"setting"}),
     sends="Two values for each setting, one after the other; all other settings are read.",
-    subject="the line as a whole",
+    subject="the transport as a whole",
 )
