@@ -1,4 +1,4 @@
-"""Encode and decode text outside any frame; end a request for text that never comes."""
+"""Text outside any frame is encoded, decoded, and rejected if it has another format."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from cobotwire.codec.interface import Codec
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import TextRequest
-from cobotwire.session import ReplyRejected
+from cobotwire.session import Exchange, ReplyRejected, RetryPolicy
+from cobotwire.session.request import RequestEncoder
 from cobotwire.session.text import TEXT_LIMIT, decode, encode
-from session.one_caller import OneCaller
+from session.one_caller import submit
 
 REPLY = TABLE.command("get_ssid_pwd").text
 assert REPLY is not None
@@ -72,16 +73,13 @@ def test_text_without_its_suffix_is_rejected(data: bytes) -> None:
         decode(variant, data)
 
 
-@pytest.fixture
-def session(codec: Codec, repeated_in_rust: None) -> OneCaller:
-    """Return a session in which the text must begin within 0.5 s."""
-    made = OneCaller(codec)
-    made.request("get_ssid_pwd", (), now=0.0, timeout=0.5)
-    return made
-
-
-def test_text_that_is_too_long_is_rejected(session: OneCaller) -> None:
-    session.receive(b"ssid: a password: b" + b"x" * TEXT_LIMIT, 0.1)
-    [*_, ended] = session.wake(0.4)
+@pytest.mark.usefixtures("repeated_in_rust")
+def test_text_that_is_too_long_is_rejected(codec: Codec) -> None:
+    exchange = Exchange(codec)
+    request = RequestEncoder(codec).encode("get_ssid_pwd", ())
+    submit(exchange, request, 0.0, RetryPolicy(attempts=1), wait=0.5)
+    assert exchange.outgoing(0.0, drained=True)
+    exchange.receive(b"ssid: a password: b" + b"x" * TEXT_LIMIT, 0.1)
+    [*_, ended] = exchange.wake(0.4)
     assert isinstance(ended, ReplyRejected)
     assert "longer than" in str(ended.error)
