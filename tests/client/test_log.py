@@ -1,4 +1,4 @@
-"""The client logs through the standard ``logging``, and prints nothing by default."""
+"""The client logs through the standard ``logging``, which it does not load, and prints nothing."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import pytest
 
 from both_ways import Opener
 from cobotwire import LinkError, ReplyTimeout
+from command_line import run_code
 from scripted_peer import ScriptedPeer
 
 ANGLES = bytes.fromhex("FE FE 0E 20 00 8C 00 3D FF E6 FF 3F 00 AF FF 51 FA")
@@ -35,3 +36,39 @@ def test_log_has_frames_noise_timeouts_and_lost_transports(
     ]
     assert ("INFO", f"{url}: no reply to is_power_on, attempts: 1") in logged
     assert logged[-1][0] == "WARNING"
+
+
+OPEN = """
+import sys
+from cobotwire import LinkError, MyCobot280
+class Memory:
+    url = "memory"
+    def write(self, data): pass
+    def read(self, timeout):
+        if timeout:
+            raise LinkError(self.url, "is gone")
+        return b""
+    def close(self): pass
+arm = MyCobot280(Memory())
+assert "logging" not in sys.modules
+"""
+
+
+def _stderr_of(code: str) -> str:
+    done = run_code(OPEN + code)
+    return done.stderr if done.returncode == 0 else f"failed: {done.stderr}"
+
+
+def test_traffic_is_logged_once_the_program_configures_logging() -> None:
+    code = "import logging\nlogging.basicConfig(level=logging.DEBUG)\narm.stop()"
+    assert _stderr_of(code) == "DEBUG:cobotwire.traffic:memory > FE FE 02 29 FA\n"
+
+
+def test_warning_goes_nowhere_without_logging() -> None:
+    code = """
+try:
+    arm.get_angles()
+except LinkError:
+    assert "logging" in sys.modules
+"""
+    assert _stderr_of(code) == ""
