@@ -78,7 +78,7 @@ rust-test: $(RUST_DATA) ## run the Rust tests
 	+cargo test $(TESTED) --quiet
 
 ASAN := target/asan
-ASAN_TESTS := $(addprefix tests/codec/test_,native_frames.py agreement.py reused_columns.py segments.py shared_reader.py buffer_protocol.py workers.py) tests/transport/test_native_calls.py
+ASAN_TESTS := $(addprefix tests/codec/test_,native_frames.py agreement.py reused_columns.py segments.py shared_reader.py buffer_protocol.py workers.py) tests/transport/test_every_transport.py
 
 rust-asan: .venv/.tools ## run the tests of the unsafe code with AddressSanitizer; needs a nightly toolchain and clang
 	RUSTFLAGS=-Zsanitizer=address cargo +nightly test --package cobotwire-simd --quiet \

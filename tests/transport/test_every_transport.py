@@ -7,23 +7,32 @@ import select
 import signal
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cobotwire import codec as codecs
 from cobotwire.protocol.errors import LinkError
 from cobotwire.transport import OpenedTransport, Transport
+from cobotwire.transport.descriptor import DescriptorTransport
 from transport.ends import Line
 
 KINDS = ["serial", "socket"]
+# In the native module, and in Python without it.
+LINES = [("serial", "native"), ("socket", "native"), ("serial", "reference")]
 AT_ONCE = 0.5
 
 
-@pytest.fixture(params=KINDS)
-def line(request: pytest.FixtureRequest) -> Iterator[Line]:
-    with Line(request.param) as open_line:
+@pytest.fixture(params=LINES)
+def line(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[Line]:
+    kind, codec = request.param
+    monkeypatch.setenv(codecs.VARIABLE, codec)
+    with Line(kind) as open_line:
+        assert isinstance(open_line.transport, DescriptorTransport)
+        assert (open_line.transport._native is not None) == (codec == "native")
         yield open_line
 
 
@@ -123,16 +132,44 @@ def test_closing_from_another_thread_ends_the_wait_at_once(line: Line) -> None:
     closing.join()
 
 
-def test_signal_handler_may_close_the_transport_that_is_read(line: Line) -> None:
-    old = signal.signal(signal.SIGALRM, lambda *_: line.transport.close())
-    signal.setitimer(signal.ITIMER_REAL, 0.05)
+@contextmanager
+def alarm(seconds: float, handler: Callable[[], object]) -> Iterator[None]:
+    """Have a signal handler called after some seconds."""
+    before = signal.signal(signal.SIGALRM, lambda *_: handler())
+    signal.setitimer(signal.ITIMER_REAL, seconds)
     try:
-        started = time.monotonic()
-        with pytest.raises(LinkError, match="closed meanwhile"):
-            line.transport.read(10.0)
-        assert time.monotonic() - started < AT_ONCE
+        yield
     finally:
-        signal.signal(signal.SIGALRM, old)
+        signal.signal(signal.SIGALRM, before)
+
+
+def test_signal_handler_ends_a_read_with_its_exception(line: Line) -> None:
+    def interrupt() -> None:
+        raise KeyboardInterrupt
+
+    started = time.monotonic()
+    with alarm(0.05, interrupt), pytest.raises(KeyboardInterrupt):
+        line.transport.read(30.0)
+    assert time.monotonic() - started < 10
+    line.end.send(b"after")
+    assert line.transport.read(5.0) == b"after"
+
+
+def test_signal_handler_that_returns_does_not_end_a_read(line: Line) -> None:
+    calls: list[int] = []
+    sending = threading.Timer(0.2, line.end.send, [b"x"])
+    sending.start()
+    with alarm(0.02, lambda: calls.append(1)):
+        assert line.transport.read(30.0) == b"x"
+    sending.join()
+    assert calls
+
+
+def test_signal_handler_may_close_the_transport_that_is_read(line: Line) -> None:
+    started = time.monotonic()
+    with alarm(0.05, line.transport.close), pytest.raises(LinkError, match="closed meanwhile"):
+        line.transport.read(10.0)
+    assert time.monotonic() - started < AT_ONCE
 
 
 def test_use_of_a_closed_transport_is_a_link_error(line: Line) -> None:
