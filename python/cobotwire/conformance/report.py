@@ -68,8 +68,8 @@ class Exchange(NamedTuple):
 class Result:
     """The verdict of one test case on one command.
 
-    ``command`` is empty if the test case is about the transport as a whole. ``case`` is the id of the
-    test case, ``source`` where the requirement is stated (``spec/commands/motion.yaml:12``),
+    ``command`` is empty if the test case is about the transport as a whole. ``case`` is its id,
+    ``source`` where the requirement is stated (``spec/commands/motion.yaml:12``),
     ``reason`` a sentence that states what was expected and received. ``further`` has the reasons
     of later failures of the test case on the command; ``reason`` says how many there were.
     ``group`` is the group of test cases that was run; empty if the subject's groups are checked
