@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import random_formats
 from cobotwire import codec as codecs
-from cobotwire.codec.interface import Codec, Frame, Noise
+from cobotwire.codec.interface import Codec, Frame
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.table import Direction, Table
 from cobotwire_codegen.wire import build_frame
@@ -42,22 +42,6 @@ def test_first_address_is_sent_unless_another_is_given(
         codec.encode("power_on", "request", ("the address is checked before any value",), address=4)
     with pytest.raises(UsageError, match="address is 0; allowed: None"):
         load(CRC).encode("get_angles", "request", (), address=0)
-
-
-@pytest.mark.parametrize("table", [CRC, SUM], ids=["crc", "sum"])
-def test_unknown_id_is_accepted_on_request_if_its_check_is_right(
-    load: Callable[[Table], Codec], table: Table
-) -> None:
-    frame = table.frame
-    body = frame.header + bytes([*frame.addresses[:1], frame.length(1), 0xE0, 7])
-    whole = body + frame.end(body)
-    codec = load(table)
-    assert codec.framer("reply", accept_unknown=True).feed(whole) == [Frame(0, whole, 0xE0)]
-    assert all(isinstance(event, Noise) for event in codec.framer("reply").feed(whole))
-    broken = whole[:-1] + bytes([whole[-1] ^ 1])
-    [first, *_] = codec.framer("reply", accept_unknown=True).feed(broken)
-    assert isinstance(first, Noise)
-    assert first.reason == "bad-check"
 
 
 @given(st.data())

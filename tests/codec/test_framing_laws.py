@@ -17,7 +17,6 @@ from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Event, Frame, Listening, Noise
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.table import Table
-from cobotwire.simulator.faults.noise import COMMAND_ERROR, PANIC
 from framed_events import cut, joined
 from strategies import TABLES, codec_of
 
@@ -117,78 +116,7 @@ def test_header_bytes_and_adjacent_frames_hide_no_frame(
     )
 
 
-@pytest.mark.parametrize(
-    ("stream", "reason"),
-    [
-        ("00", "no-header"),
-        ("FE 00 00", "no-header"),
-        ("FE FE 77 20 FA", "bad-length"),
-        ("FE FE 03 20 01 FA", "bad-length"),
-        ("FE FE 03 99 01 FA", "unknown-id"),
-        ("FE FE 03 12 01 FB", "bad-check"),
-        ("FE FE 03 12", "truncated"),
-        ("FE", "truncated"),
-    ],
-)
-def test_first_byte_of_noise_has_the_reason(codec: Codec, stream: str, reason: str) -> None:
-    first = cut(codec, "reply", [bytes.fromhex(stream)])[0]
-    assert isinstance(first, Noise)
-    assert first.reason == reason
-
-
-ANGLES = bytes.fromhex("FE FE 0E 20 00 00 01 02 03 04 05 06 07 08 09 0A FA")
 POWERED = bytes.fromhex("FE FE 03 12 01 FA")
-
-
-@pytest.mark.parametrize(
-    "noise",
-    [
-        "ff ff 01 04 02 38 02 be",
-        "ff ff 01 04 00 ff 07 f4",
-        "ff ff fe 0a 82 38 0f 01 02 03 04 05 06 19",
-        "ff ff 07 02 01 f5",
-        "ff ff 01 04 02 38 c2 fe",  # its checksum is FE
-        "fe fe 03 10 01 fa",  # this edition has no acknowledgements
-        "78 80 78",
-        "fe",
-        "fe fe fe",
-        "fe fe 0e",
-        "fe fe 0e 99",
-        "fe fe 77 20",
-        "fe fe fe 0e",
-        bytes(277).hex(),
-        COMMAND_ERROR.hex(),
-        PANIC.hex(),
-        PANIC[PANIC.index(b"Backtrace") :].hex(),
-    ],
-)
-def test_noise_seen_in_the_field_hides_no_frame(codec: Codec, noise: str) -> None:
-    piece = bytes.fromhex(noise)
-    stream, sent = b"", []
-    for frame in [ANGLES, POWERED] * 3:
-        stream += piece
-        sent.append((len(stream), frame))
-        stream += frame
-    for chunks in ([stream], [bytes([byte]) for byte in stream]):
-        events = cut(codec, "reply", chunks)
-        assert [(e.offset, e.data) for e in events if isinstance(e, Frame)] == sent
-
-
-@pytest.mark.parametrize(
-    ("text", "inside"),
-    [
-        # By chance an FA is where the frame of a false header would end: that frame is legal.
-        ("FE FE 0E 20 FE FE 03 12 01 FA FE FE 03 53 87 FA FA", [4, 10]),
-        ("FE FE 0E 20 00 00 FE FE 03 12 01 FA 00 00 00 00 FA", [6]),
-    ],
-)
-def test_frames_within_a_legal_frame_are_found_only_if_it_is_damaged(
-    codec: Codec, text: str, inside: list[int]
-) -> None:
-    whole = bytes.fromhex(text)
-    assert cut(codec, "reply", [whole]) == [Frame(0, whole, 0x20)]
-    events = cut(codec, "reply", [whole[:-1] + b"\x00"])
-    assert [e.offset for e in events if isinstance(e, Frame)] == inside
 
 
 @pytest.mark.parametrize("false", ["FE FE 0D 20", "FE FE 0E 12"])
