@@ -8,11 +8,11 @@ import pytest
 
 import json_tables
 import vectors
-from cobotwire.codec.interface import Codec, Frame
+from cobotwire.codec.interface import Codec
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Direction
 from cobotwire_codegen.model import Vector
-from strategies import TABLES, codec_of
+from strategies import codec_of
 
 EACH_EDITION = pytest.mark.parametrize("edition", vectors.editions())
 
@@ -60,32 +60,6 @@ def test_codec_accepts_and_refuses_the_stated_values(codec: Codec, edition: str)
                 assert legal, (vector.name, fields)
 
 
-@EACH_EDITION
-def test_framer_finds_each_frame_after_noise_and_the_first_command_that_allows_it(
-    codec: Codec, edition: str
-) -> None:
-    codec = codec_of(edition, codec.name)
-
-    def allowed(name: str, vector: Vector, frame: bytes) -> bool:
-        try:
-            codec.decode(vector.direction, frame, of=name)
-        except ProtocolError:
-            return False
-        return True
-
-    for vector in _of(edition):
-        if vector.frame is None:
-            continue
-        id = codec.table.frame.read_id(vector.frame)
-        framer = codec.framer(vector.direction)
-        found = [e for e in framer.feed(b"\xff\xfe\xfe" + vector.frame) if isinstance(e, Frame)]
-        assert found == [Frame(3, vector.frame, id)], vector.name
-        names = [command.name for command in codec.table.commands if command.id == id]
-        right = [name for name in names if allowed(name, vector, vector.frame)]
-        assert vector.command in right
-        assert codec.decode(vector.direction, vector.frame).command.name == right[0], vector.name
-
-
 def test_five_examples_have_an_illegal_length_in_both_directions(codec: Codec) -> None:
     def legal(printed: bytes, direction: Direction) -> bool:
         try:
@@ -116,21 +90,6 @@ def test_illegal_length_is_rejected_with_its_reason(codec: Codec, edition: str) 
             codec_of(edition, codec.name).decode(vector.direction, vector.printed)
         assert (caught.value.reason, caught.value.offset) == vector.rejected, vector.name
         assert caught.value.data == vector.printed
-
-
-@pytest.mark.parametrize("edition", TABLES)
-def test_older_variant_of_a_reply_decodes_without_the_joint(codec: Codec, edition: str) -> None:
-    codec = codec_of(edition, codec.name)
-    full = codec.decode("reply", bytes.fromhex("FEFE04500101FA"))
-    short = codec.decode("reply", bytes.fromhex("FEFE035001FA"))
-    assert full.fields == {"joint": 1, "enabled": 1}
-    assert short.fields == {"enabled": 1}
-
-
-@pytest.mark.parametrize("edition", TABLES)
-def test_degrees_are_rounded_to_the_nearest_raw_value(codec: Codec, edition: str) -> None:
-    frame = codec_of(edition, codec.name).encode("send_angle", "request", (1, 0.29, 20))
-    assert frame == bytes.fromhex("FEFE06210100 1D14FA"), "0.29 degrees is 29 steps, not 28"
 
 
 BLOCK = (0xFEFEFEFE,) * 31
