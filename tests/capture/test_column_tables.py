@@ -165,6 +165,30 @@ def test_large_capture_has_the_rows_and_times_of_its_bytes(piece: int) -> None:
     assert np.concatenate([np.asarray(rows.offset) for rows in batches]).tolist() == places.tolist()
 
 
+def test_frame_has_the_time_of_its_first_byte_if_each_byte_came_by_itself() -> None:
+    # A reader that forgets the first byte of an unfinished frame reports the time of a later one.
+    # The second frame is certain only at the end, since a longer one seems to begin before it.
+    line, step = REPLY + REPLY[:4] + FRAMES[2], 10**6
+    data = written(
+        Packet(START + at * step, "received", line[at : at + 1]) for at in range(len(line))
+    )
+    for piece in (1, 40, len(data)):
+        found = {
+            rows.command.name: (rows.offset.tolist(), rows.time.tolist())
+            for batch in read_batches(data, NATIVE, piece=piece)
+            for rows in batch
+        }
+        expected = {"get_angles": 0, "is_power_on": 21}
+        assert found == {name: ([at], [START + at * step]) for name, at in expected.items()}
+
+
+def test_rejected_frame_has_its_time_and_offset() -> None:
+    illegal = bytes.fromhex("FE FE 03 12 07 FA")
+    data = written([Packet(START, "received", REPLY), Packet(START + 1, "received", illegal)])
+    [stream] = read_columns(data, NATIVE).streams
+    assert [list(column) for column in stream.rejected] == [[START + 1], [17]]
+
+
 def test_long_noise_has_the_time_of_its_first_byte() -> None:
     noise = [Packet(START + n, "received", bytes(1000), "bytes") for n in range(1500)]
     data = written([*noise, Packet(START + 9999, "received", REPLY)])
