@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import pytest
@@ -146,17 +145,6 @@ def test_scans_of_a_clean_line_meet_within_two_frames(name: codecs.CodecName) ->
         assert point is not None
         assert point % 17 == 0
         assert cut <= point < cut + 17 + 29
-
-
-def test_segments_follow_one_another_without_a_gap() -> None:
-    codec = codec_of("mycobot280", "native")
-    stream = Bytes((FLAG + b"\0\xfe" + OUTER) * 300)
-    places = [100, 100, 101, 3000, 7000]
-    divider = Divider(codec, "both", stream, places)
-    segments = [divider.segment(piece) for piece in range(6)]
-    assert segments[0].start == 0
-    assert segments[-1].end == stream.size
-    assert all(left.end == right.start for left, right in pairwise(segments))
 
 
 @EACH_CODEC
