@@ -9,11 +9,18 @@ from pathlib import Path
 
 import dask
 import pytest
-import s3fs
 from distributed import Client
 
-from capture.archive.captures import archive_in, counts, noisy_stream, on_one_machine, plan, rows
+from capture.archive.captures import (
+    archive_in,
+    counts,
+    noisy_stream,
+    on_one_machine,
+    plan,
+    rows,
+)
 from capture.archive.dask_processes import DaskProcesses
+from capture.archive.test_s3 import check_object_store
 from cobotwire.capture import archive
 from cobotwire.capture.archive import DaskEngine
 from cobotwire.capture.export import Inputs
@@ -51,28 +58,7 @@ def test_dataframe_and_delayed_tables_hold_the_rows_of_one_machine(
 def test_archive_in_an_object_store_is_read_and_written_there(
     cluster: DaskProcesses, bucket: str, tmp_path: Path
 ) -> None:
-    store = s3fs.S3FileSystem()
-    (tmp_path / "day").mkdir()
-    local = archive_in(tmp_path / "day")
-    store.put(str(tmp_path / "day"), f"{bucket}/raw/", recursive=True)
-    inputs = Inputs.find([f"{bucket}/raw"])
-    one = on_one_machine(tmp_path / "one", local)
-    many = archive.export(
-        plan(f"{bucket}/out"),
-        inputs,
-        DaskEngine(cluster.address),
-        piece_bytes=12_000,
-    )
-    assert counts(many) == counts(one)
-    store.invalidate_cache()
-    names = store.find(f"{bucket}/out")
-    assert sorted(f"s3://{name}" for name in names) == sorted(file.path for file in many.files)
-    store.get(f"{bucket}/out/", str(tmp_path / "many"), recursive=True)
-    found, expected = rows(tmp_path / "many"), rows(tmp_path / "one")
-    assert found.keys() == expected.keys()
-    for message, table in found.items():
-        # The inputs have other names in the object store.
-        assert table.drop_columns("source") == expected[message].drop_columns("source")
+    check_object_store(f"{bucket}/cluster", tmp_path, DaskEngine(cluster.address))
 
 
 def test_task_that_kills_each_worker_is_an_error(cluster: DaskProcesses, tmp_path: Path) -> None:
