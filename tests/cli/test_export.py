@@ -11,6 +11,7 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 
+from capture.archive.captures import noisy_stream
 from capture.export.exporting import CODEC, START, polled, recording, reply
 from cobotwire.capture import Packet
 from cobotwire.capture.export import OutputFile, Report
@@ -101,6 +102,13 @@ def test_standard_input_is_exported(tmp_path: Path) -> None:
         (["--partition", "robots"], "did you mean robot?"),
         (["--as", "mcap", "--wide"], "wide columns are for tables"),
         (["none.bin"], "none.bin: no such file"),
+        (["--scheduler", "tcp://127.0.0.1:1"], "a scheduler needs a Dask cluster"),
+        (["--workers", "2"], "--workers needs --engine threads or --engine dask"),
+        (
+            ["--engine", "dask", "--scheduler", "tcp://127.0.0.1:1", "--workers", "2"],
+            "the cluster has its own workers",
+        ),
+        (["--output", "memory://out"], "only an export with --engine can write there"),
     ],
 )
 def test_wrong_usage_is_explained_before_anything_is_written(
@@ -153,6 +161,18 @@ def test_times_before_1970_are_not_written_to_mcap(tmp_path: Path) -> None:
     done = exported(path, "-o", tmp_path / "arm.mcap")
     assert done.returncode == 2
     assert "times before 1970, which an MCAP file cannot hold" in done.stderr
+
+
+def test_threads_write_numbered_files_and_report_the_same_counts(tmp_path: Path) -> None:
+    (tmp_path / "arm.bin").write_bytes(noisy_stream(300))
+    reports = []
+    for name, engine in (("one", ()), ("many", ("--engine", "threads"))):
+        done = exported(tmp_path / "arm.bin", "-o", tmp_path / name, "--json", *engine)
+        assert (done.returncode, done.stderr) == (1, "")
+        reports.append({**json.loads(done.stdout), "files": None})
+    assert reports[0] == reports[1]
+    part = tmp_path / "many" / "get_angles.reply-00000.parquet"
+    assert pq.ParquetFile(part).metadata.num_rows == 300
 
 
 def test_partitions_are_folders_that_readers_know(arm: Path, tmp_path: Path) -> None:
