@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from cobotwire.capture import CaptureWriter, Interface, Packet, read
+from capture.lines import written
+from cobotwire.capture import Packet, read
 from cobotwire.simulator import PtyServer, SimulatedArm
 from in_process import cobotwire as run
 from scripted_peer import ScriptedPeer
@@ -68,13 +69,8 @@ def test_truncated_recording_is_decoded_with_a_warning(recorded: Path, tmp_path:
 
 @pytest.mark.parametrize("kind", ["bin", "pcapng"])
 def test_cut_compressed_file_is_decoded_and_reported(tmp_path: Path, kind: str) -> None:
-    plain, path = tmp_path / "arm.pcapng", tmp_path / f"arm.{kind}.gz"
-    with plain.open("wb") as file:
-        writer = CaptureWriter(file)
-        writer.interface(Interface("port", "mycobot", 115200))
-        writer.packet(Packet(0, "received", ANGLES, "frame"))
-        writer.finish()
-    data = plain.read_bytes() if kind == "pcapng" else ANGLES
+    path = tmp_path / f"arm.{kind}.gz"
+    data = written([Packet(0, "received", ANGLES)]) if kind == "pcapng" else ANGLES
     path.write_bytes(gzip.compress(data)[:-3])
     result = run("decode", path)
     assert result.returncode == 1
@@ -87,12 +83,8 @@ def test_cut_compressed_file_is_decoded_and_reported(tmp_path: Path, kind: str) 
 
 def test_direction_option_applies_to_packets_of_unknown_direction(tmp_path: Path) -> None:
     path = tmp_path / "other.pcapng"
-    with path.open("wb") as file:
-        writer = CaptureWriter(file, "another program")
-        line = writer.interface(Interface("", "", 0))
-        writer.packet(Packet(1_000, "unknown", ANGLES[:5], "bytes", interface=line))
-        writer.packet(Packet(2_000, "unknown", ANGLES[5:], "bytes", interface=line))
-        writer.finish()
+    parts = (ANGLES[:5], ANGLES[5:])
+    path.write_bytes(written(Packet(n, "unknown", part, "bytes") for n, part in enumerate(parts)))
     result = run("decode", path, "--direction", "reply")
     assert result.returncode == 0
     assert result.stdout.split()[:4] == ["0.000000", "?", "0", "frame"]
@@ -112,11 +104,6 @@ def test_existing_file_is_not_overwritten_and_nothing_is_sent(
 
 def test_times_count_from_the_first_packet_even_if_it_is_at_0_ns(tmp_path: Path) -> None:
     path = tmp_path / "arm.pcapng"
-    with path.open("wb") as file:
-        writer = CaptureWriter(file)
-        writer.interface(Interface("port", "mycobot", 115200))
-        writer.packet(Packet(0, "sent", QUERY, "frame"))
-        writer.packet(Packet(1_500_000_000, "received", ANGLES, "frame"))
-        writer.finish()
+    path.write_bytes(written([Packet(0, "sent", QUERY), Packet(1_500_000_000, "received", ANGLES)]))
     result = run("decode", path)
     assert [line.split()[0] for line in result.stdout.splitlines()] == ["0.000000", "1.500000"]

@@ -9,8 +9,8 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
+from capture.lines import written
 from capture.test_foreign import ANGLES, ASKED, FILES
-from cobotwire.capture import CaptureWriter, Interface
 from decoding import run
 from in_process import cobotwire
 
@@ -85,11 +85,7 @@ def test_export_reports_a_wrong_line_and_keeps_what_came_before(tmp_path: Path) 
 )
 def test_empty_input_is_one_error(verb: Sequence[str], size: str, tmp_path: Path) -> None:
     path = tmp_path / "nothing"
-    with path.open("wb") as file:
-        if size == "recording":
-            writer = CaptureWriter(file)
-            writer.interface(Interface("/dev/ttyACM0"))
-            writer.finish()
+    path.write_bytes(written([]) if size == "recording" else b"")
     words = [str(tmp_path / word) if word.startswith("out") else word for word in verb]
     done = cobotwire(*words, path)
     assert (done.returncode, done.stderr) == (2, f"cobotwire: {path} is empty\n")

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-import re
 import struct
 import subprocess
 import sys
+from itertools import cycle
 from pathlib import Path
 
 import pytest
 
+from capture.lines import written
 from cobotwire import MyCobot
 from cobotwire import codec as codecs
-from cobotwire.capture import CaptureWriter, Interface, Packet, Piece, read
+from cobotwire.capture import Packet, Piece, read
 from cobotwire.capture import block_encoding as blocks
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.errors import ScenarioError
 from cobotwire.simulator import PtyServer, ReplayedArm
 from cobotwire.simulator.faults import load
 from in_process import cobotwire
-from scripted_peer import ScriptedPeer
 
 SECOND = 10**9
 REQUEST = bytes.fromhex("FE FE 02 20 FA")
@@ -89,14 +89,9 @@ def test_times_that_run_backwards_are_shown(
     tmp_path: Path, seconds: tuple[int, ...], verb: list[str]
 ) -> None:
     path = tmp_path / "arm.pcapng"
-    with path.open("wb") as file:
-        writer = CaptureWriter(file)
-        writer.interface(Interface("", "mycobot"))
-        for number, second in enumerate(seconds):
-            frame = (REQUEST, ANGLES)[number % 2]
-            direction = ("sent", "received")[number % 2]
-            writer.packet(Packet(second * SECOND, direction, frame))  # type: ignore[arg-type]
-        writer.finish()
+    ends = Packet(0, "sent", REQUEST), Packet(0, "received", ANGLES)
+    packets = (each._replace(time_ns=at * SECOND) for each, at in zip(cycle(ends), seconds))
+    path.write_bytes(written(packets))
     assert show(verb, path)[0] == 0
     if verb == ["plot", "-o"]:
         assert path.with_suffix(".png").stat().st_size > 1000
@@ -120,22 +115,6 @@ def test_panic_with_a_core_of_thousands_of_digits_is_decoded(
     code, text = run("decode", file, *words)
     assert code == 1
     assert "LoadProhibited" in text
-
-
-@pytest.mark.parametrize(
-    "words",
-    [
-        ["doctor", "URL", "--count", "1", "--timeout", "0.2"],
-        ["monitor", "URL", "--count", "1"],
-        ["call", "URL", "get_angles", "--timeout", "0.2"],
-    ],
-    ids=lambda words: words[0],
-)
-def test_panic_with_a_core_of_thousands_of_digits_is_reported(words: list[str]) -> None:
-    with ScriptedPeer(*[[PANIC.encode()]] * 200) as peer:
-        _, text = run(*(peer.url if word == "URL" else word for word in words))
-    # A command that keeps only the first received bytes may lose the cause of the panic.
-    assert re.search("panic (LoadProhibited|of unknown cause)", text)
 
 
 @pytest.mark.parametrize("line", ["get_angles 'x", 'send_angle 1 "', "get_angles \\"])
