@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from cobotwire.cli.commands import byte_table
-from cobotwire.editions import mycobot280
 from cobotwire.editions.mycobot import TABLE
 from cobotwire.protocol.table import Check, FrameFormat
 from in_process import cobotwire
@@ -16,12 +15,6 @@ def rows(frame: FrameFormat) -> list[tuple[object, ...]]:
     command = TABLE.command("get_encoder")
     grid = byte_table(frame, command, "request", command.request[0])
     return list(zip(*[list(column.cells) for column in grid.columns[:3]]))
-
-
-def test_list_in_a_pipe_has_no_spaces_at_the_end_of_lines() -> None:
-    lines = cobotwire("commands").stdout.splitlines()
-    assert [line for line in lines if line.endswith(" ")] == []
-    assert len(lines) == 1 + len(mycobot280.TABLE.commands)
 
 
 def test_motion_of_the_client_is_described() -> None:
