@@ -97,7 +97,7 @@ def test_standard_input_is_exported(tmp_path: Path) -> None:
     ("words", "text"),
     [
         (["--command", "get_angels"], "did you mean get_angles?"),
-        (["--from", "yesterday"], "give a time in ISO 8601, such as 2026-11-23T14:30:00Z"),
+        (["--from", "yesterday"], "--from is 'yesterday'; give a time in ISO 8601, such as 2026-"),
         (["--from", "2026-11-24", "--to", "2026-11-23"], "the time range is empty"),
         (["--partition", "robots"], "did you mean robot?"),
         (["--as", "mcap", "--wide"], "wide columns are for tables"),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import duckdb
 import pytest
 
 from capture.archive.captures import archive_in, counts, on_one_machine, rows
@@ -37,16 +36,6 @@ def test_tables_hold_the_rows_of_an_export_in_their_order(inputs: Inputs, tmp_pa
     assert scanned.pop("not_chosen") == report.rows.total() - report.rows["get_angles.reply"]
     assert scanned["noise"] == counts(report)["noise"]
     assert (scanned["bytes"], scanned["rejected"]) == (report.bytes, report.rejected)
-
-
-def test_table_answers_a_query(inputs: Inputs) -> None:
-    table = archive.scan(
-        inputs.files[0].url, InstalledEditions(), "get_angles", piece_bytes=10_000
-    ).to_arrow()
-    with duckdb.connect() as database:
-        database.register("angles", table)
-        found = database.sql("select count(*), max(j1) <= 160 from angles").fetchall()
-    assert found == [(2000, True)]
 
 
 def test_message_that_no_input_holds_has_an_empty_table(inputs: Inputs) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -158,11 +157,6 @@ def test_units_and_names_are_in_the_metadata(angles: Path) -> None:
     schema = pq.read_schema(angles / "angles.parquet")
     assert schema.field("j1").metadata[b"unit"] == b"degree"
     assert schema.metadata[b"command"] == b"get_angles"
-
-
-def test_offsets_of_a_file_do_not_decrease(angles: Path) -> None:
-    offsets = pq.read_table(angles / "angles.parquet").column("offset").to_pylist()
-    assert all(before < after for before, after in pairwise(offsets))
 
 
 def test_file_without_rows_has_the_columns_of_one_with_rows(angles: Path) -> None:
