@@ -85,19 +85,6 @@ def test_address_without_a_name_is_named_by_its_number(codec: Codec) -> None:
     assert table["address"].to_pylist() == ["1", "2", "2", "1"]
 
 
-def test_rows_of_an_edition_without_addresses_have_none(codec_280: Codec) -> None:
-    columns = codec_280.decode_columns(codec_280.encode("get_angles", "request", ()) * 2)
-    rows = columns.rows("get_angles", "request")
-    assert rows.address is None
-    assert [*rows.to_numpy()] == rows.to_arrow().column_names == ["offset"]
-    assert columns.rows("get_coords").address is None
-
-
-@pytest.fixture(params=["reference", "native"])
-def codec_280(request: pytest.FixtureRequest) -> Codec:
-    return codecs.load(mycobot280.TABLE, request.param)
-
-
 def test_register_address_is_not_the_address_of_a_device() -> None:
     table = codecs.load(load("mycobot320").TABLE).decode_columns(b"").to_arrow("get_pro_gripper")
     assert table.column_names[:3] == ["offset", "gripper_id", "reply_address"]
