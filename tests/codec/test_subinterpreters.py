@@ -88,10 +88,6 @@ def _run(script: str) -> None:
     assert done.returncode == 0, done.stderr[-3000:]
 
 
-def test_subinterpreter_after_the_main_one_gets_the_reference() -> None:
-    _run("use('native')\nsub = make()\nrun(sub, SUB)\nuse('native')")
-
-
 def test_main_interpreter_after_a_subinterpreter_gets_the_native_codec() -> None:
     _run("sub = make()\nrun(sub, SUB)\ninterpreters.destroy(sub)\nuse('native')")
 
