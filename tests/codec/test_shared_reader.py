@@ -78,19 +78,3 @@ def test_reader_continues_after_an_error_of_a_second_thread(codec: Codec) -> Non
     assert (len(columns), thread.reader.pending) == (0, 5)
     [rows] = thread.reader.feed(ANGLES[5:])
     assert rows.offset.tolist() == [len(thread.stream)]
-
-
-def test_threads_may_take_turns_with_a_lock(codec: Codec) -> None:
-    reader, lock, counts = codec.column_reader("reply"), threading.Lock(), []
-
-    def feed() -> None:
-        for _ in range(200):
-            with lock:
-                counts.append(sum(map(len, reader.feed(ANGLES))))
-
-    threads = [threading.Thread(target=feed) for _ in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert sum(counts) == 800

@@ -57,18 +57,6 @@ def test_large_stream_has_the_same_columns_with_several_threads(
     ) == everything(codec.decode_columns(stream, listening, raw=raw))
 
 
-@settings(max_examples=20)
-@given(listening=LISTENING, workers=st.integers(1, 5), stream=strategies.streams())
-def test_native_columns_of_a_small_stream_equal_the_reference(
-    listening: Listening, workers: int, stream: bytes
-) -> None:
-    native, reference = (codec_of("mycobot280", name) for name in ("native", "reference"))
-    found = native.decode_columns(stream, listening, workers=workers)
-    assert everything(found) == everything(
-        reference.decode_columns(stream, listening, workers=workers)
-    )
-
-
 @pytest.mark.parametrize("call", ["scan", "decode_columns"])
 @pytest.mark.parametrize("workers", [0, -1, 65_536, 1 << 70, 1.5, "2", None])
 def test_wrong_number_of_threads_is_refused_before_anything_is_read(
