@@ -159,10 +159,10 @@ def recording(tmp_path: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize("verb", [["decode"], ["decode", "--summary"], ["replay"]], ids=" ".join)
+@pytest.mark.parametrize("words", [["decode"], ["decode", "--summary"], ["replay"]], ids=" ".join)
 @pytest.mark.parametrize("json", [[], ["--json"]], ids=["text", "json"])
-def test_recording_is_shown_printable(recording: Path, verb: list[str], json: list[str]) -> None:
-    text = run(*verb, recording, *json)
+def test_recording_is_shown_printable(recording: Path, words: list[str], json: list[str]) -> None:
+    text = run(*words, recording, *json)
     assert "received" in text or "panic" in text or "<" in text
     assert is_clean(text)
 
@@ -223,21 +223,21 @@ def test_plot_shows_file_and_port_as_they_are(recording: Path, tmp_path: Path) -
 
 
 @pytest.mark.parametrize(
-    "verb",
+    "subcommand",
     [
         ["call", "URL", "get_angles", "--timeout", "0.3"],
         ["doctor", "--count", "1", "--timeout", "0.2"],
         ["monitor", "--count", "1"],
         ["conform", "device", "--port"],
     ],
-    ids=lambda verb: " ".join(verb[:2]),
+    ids=lambda subcommand: " ".join(subcommand[:2]),
 )
 @pytest.mark.parametrize("json", [False, True], ids=["text", "json"])
-def test_what_the_arm_sends_is_shown_printable(verb: list[str], json: bool) -> None:
-    words = ["--json"] if json and verb[0] != "conform" else []
+def test_what_the_arm_sends_is_shown_printable(subcommand: list[str], json: bool) -> None:
+    words = ["--json"] if json and subcommand[0] != "conform" else []
     with ScriptedPeer(*[[PANIC]] * 200) as peer:
-        text = run(*_fill(verb, peer.url), *words)
-    assert "panic" in text or "conform" in verb
+        text = run(*_fill(subcommand, peer.url), *words)
+    assert "panic" in text or "conform" in subcommand
     assert is_clean(text)
 
 

@@ -42,11 +42,11 @@ def test_demo_with_a_wrong_reply_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "7 of 8 replies are right" in result.stdout
 
 
-def test_help_lists_verbs_and_exit_codes() -> None:
+def test_help_lists_subcommands_and_exit_codes() -> None:
     result = run("--help")
     assert result.returncode == 0
-    verbs = ("demo", "ports", "doctor", "monitor", "call", "decode", "sim", "replay", "commands")
-    for word in (*verbs, "Exit codes"):
+    names = ("demo", "ports", "doctor", "monitor", "call", "decode", "sim", "replay", "commands")
+    for word in (*names, "Exit codes"):
         assert word in result.stdout
 
 

@@ -11,7 +11,7 @@ import click
 import pytest
 from click.testing import CliRunner
 
-from cli.test_same_words import verbs
+from cli.test_same_words import subcommands
 from cobotwire import editions
 from cobotwire.cli.app import app
 from cobotwire.cli.completion import SHELLS
@@ -56,15 +56,15 @@ def test_words_are_completed_in_every_shell(shell: str, line: str, expected: set
     assert all(word.startswith(start) for word in words)
 
 
-def test_ports_are_completed_for_every_verb_that_opens_one(
+def test_ports_are_completed_for_every_subcommand_that_opens_one(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     # pyserial finds no port on most test machines, so the list is replaced.
     monkeypatch.setattr(serial_ports, "ports", lambda: [Port("/dev/ttyACM7", False, "", False)])
     completed = {
-        name: [item.value for item in parameter.shell_complete(click.Context(verb), "/dev/ttyA")]
-        for name, verb in verbs()
-        for parameter in verb.params
+        name: [item.value for item in parameter.shell_complete(click.Context(each), "/dev/ttyA")]
+        for name, each in subcommands()
+        for parameter in each.params
         if isinstance(parameter, click.Argument) and parameter.metavar == "URL"
     }
     names = (

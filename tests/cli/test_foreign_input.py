@@ -1,4 +1,4 @@
-"""Run verbs on files of other programs, and on empty files."""
+"""Run subcommands on files of other programs, and on empty files."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_export_reports_a_wrong_line_and_keeps_what_came_before(tmp_path: Path) 
 
 @pytest.mark.parametrize("size", ["file", "recording"])
 @pytest.mark.parametrize(
-    "verb",
+    "subcommand",
     [
         ["decode"],
         ["decode", "--summary"],
@@ -83,10 +83,10 @@ def test_export_reports_a_wrong_line_and_keeps_what_came_before(tmp_path: Path) 
     ],
     ids=" ".join,
 )
-def test_empty_input_is_one_error(verb: Sequence[str], size: str, tmp_path: Path) -> None:
+def test_empty_input_is_one_error(subcommand: Sequence[str], size: str, tmp_path: Path) -> None:
     path = tmp_path / "nothing"
     path.write_bytes(written([]) if size == "recording" else b"")
-    words = [str(tmp_path / word) if word.startswith("out") else word for word in verb]
+    words = [str(tmp_path / word) if word.startswith("out") else word for word in subcommand]
     done = cobotwire(*words, path)
     assert (done.returncode, done.stderr) == (2, f"cobotwire: {path} is empty\n")
     assert list(tmp_path.iterdir()) == [path]

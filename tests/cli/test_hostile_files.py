@@ -43,18 +43,18 @@ def write(path: Path, *comments: str, options: list[tuple[int, bytes]] | None = 
     return path
 
 
-VERBS = [["replay"], ["replay", "--json"], ["decode"], ["decode", "--json"], ["plot", "-o"]]
+SUBCOMMANDS = [["replay"], ["replay", "--json"], ["decode"], ["decode", "--json"], ["plot", "-o"]]
 
 
-def show(verb: list[str], recording: Path) -> tuple[int, str]:
-    """Run a verb on a recording."""
-    output = [recording.with_suffix(".png")] if verb[0] == "plot" else []
-    return run(*verb, *output, recording)
+def show(subcommand: list[str], recording: Path) -> tuple[int, str]:
+    """Run a subcommand on a recording."""
+    output = [recording.with_suffix(".png")] if subcommand[0] == "plot" else []
+    return run(*subcommand, *output, recording)
 
 
-@pytest.mark.parametrize("verb", VERBS, ids=" ".join)
+@pytest.mark.parametrize("subcommand", SUBCOMMANDS, ids=" ".join)
 def test_number_with_thousands_of_digits_in_a_comment_changes_nothing(
-    tmp_path: Path, verb: list[str]
+    tmp_path: Path, subcommand: list[str]
 ) -> None:
     recording = write(
         tmp_path / "arm.pcapng",
@@ -63,20 +63,21 @@ def test_number_with_thousands_of_digits_in_a_comment_changes_nothing(
         f"in pieces: 17 bytes at +{'9' * 400} ns",  # beyond a float
         f"in pieces: {'0' * 5000}17 bytes at +1 ns",
     )
-    code, _ = show(verb, recording)
+    code, _ = show(subcommand, recording)
     # The recording lacks its end marker; only decode reports this.
-    assert code == (verb[0] == "decode")
+    assert code == (subcommand[0] == "decode")
     *others, last = (packet.pieces for packet in read(recording))
     assert others == [()] * 3
     assert last in ((), (Piece(17, SECOND + 1),))
 
 
-@pytest.mark.parametrize("verb", VERBS, ids=" ".join)
+@pytest.mark.parametrize("subcommand", SUBCOMMANDS, ids=" ".join)
 @pytest.mark.parametrize("option", [blocks.INTERFACE_SPEED, blocks.INTERFACE_OFFSET])
 def test_number_of_an_interface_with_thousands_of_bytes_is_damage(
-    tmp_path: Path, verb: list[str], option: int
+    tmp_path: Path, subcommand: list[str], option: int
 ) -> None:
-    code, text = show(verb, write(tmp_path / "arm.pcapng", "", options=[(option, b"\x7f" * 5000)]))
+    path = write(tmp_path / "arm.pcapng", "", options=[(option, b"\x7f" * 5000)])
+    code, text = show(subcommand, path)
     assert code == 6
     assert "a number of an interface is too long" in text
 
@@ -84,16 +85,16 @@ def test_number_of_an_interface_with_thousands_of_bytes_is_damage(
 @pytest.mark.parametrize(
     "seconds", [(10, 9, 8, 7), (10, 11, 2, 3), (5, 5, 5, 5), (0, 2**34)], ids=str
 )
-@pytest.mark.parametrize("verb", [*VERBS, ["plot", "--pose", "-o"]], ids=" ".join)
+@pytest.mark.parametrize("subcommand", [*SUBCOMMANDS, ["plot", "--pose", "-o"]], ids=" ".join)
 def test_times_that_run_backwards_are_shown(
-    tmp_path: Path, seconds: tuple[int, ...], verb: list[str]
+    tmp_path: Path, seconds: tuple[int, ...], subcommand: list[str]
 ) -> None:
     path = tmp_path / "arm.pcapng"
     ends = Packet(0, "sent", REQUEST), Packet(0, "received", ANGLES)
     packets = (each._replace(time_ns=at * SECOND) for each, at in zip(cycle(ends), seconds))
     path.write_bytes(written(packets))
-    assert show(verb, path)[0] == 0
-    if verb == ["plot", "-o"]:
+    assert show(subcommand, path)[0] == 0
+    if subcommand == ["plot", "-o"]:
         assert path.with_suffix(".png").stat().st_size > 1000
 
 

@@ -1,4 +1,4 @@
-"""Parse the options of verbs that let other programs move an arm."""
+"""Parse the options of subcommands that let other programs move an arm."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ FOUND: list[MotionOptions] = []
 
 @click.command()
 @motion_options(silence=0.5)
-def verb(motion: MotionOptions) -> None:
+def subcommand(motion: MotionOptions) -> None:
     FOUND.append(motion)
 
 
 def _run(*words: str) -> Ended:
     FOUND.clear()
-    return run(verb, "verb", *words)
+    return run(subcommand, "subcommand", *words)
 
 
 def test_options_become_limits() -> None:

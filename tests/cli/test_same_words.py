@@ -1,4 +1,4 @@
-"""All verbs use the same words for the port, for the edition and for JSON output."""
+"""All subcommands use the same words for the port, for the edition and for JSON output."""
 
 from __future__ import annotations
 
@@ -13,50 +13,50 @@ from cobotwire.cli.app import app
 from in_process import cobotwire
 
 
-def verbs(group: click.Group = app, *names: str) -> Iterator[tuple[str, click.Command]]:
-    """Yield each verb of the command line with its name."""
+def subcommands(group: click.Group = app, *names: str) -> Iterator[tuple[str, click.Command]]:
+    """Yield each subcommand of the command line with its name."""
     context = click.Context(group)
     for name in group.list_commands(context):
-        verb = group.get_command(context, name)
-        assert verb is not None
-        if isinstance(verb, click.Group):
-            yield from verbs(verb, *names, name)
+        subcommand = group.get_command(context, name)
+        assert subcommand is not None
+        if isinstance(subcommand, click.Group):
+            yield from subcommands(subcommand, *names, name)
         else:
-            yield " ".join([*names, name]), verb
+            yield " ".join([*names, name]), subcommand
 
 
-VERBS = dict(verbs())
+SUBCOMMANDS = dict(subcommands())
 
 
-def test_verbs_that_open_a_port_take_it_as_their_first_argument_url() -> None:
+def test_subcommands_that_open_a_port_take_it_as_their_first_argument_url() -> None:
     taking = set()
-    for name, verb in VERBS.items():
-        arguments = [p for p in verb.params if isinstance(p, click.Argument)]
+    for name, subcommand in SUBCOMMANDS.items():
+        arguments = [p for p in subcommand.params if isinstance(p, click.Argument)]
         taking |= {name for p in arguments[:1] if p.name == "port" and p.metavar == "URL"}
         assert not [p for p in arguments[1:] if p.name == "port"], name
-        assert not [p for p in verb.params if {"--port", "--url"} & {*p.opts}], name
+        assert not [p for p in subcommand.params if {"--port", "--url"} & {*p.opts}], name
     assert {"call", "doctor", "monitor", "conform device"} <= taking
 
 
-@pytest.mark.parametrize("name", VERBS)
+@pytest.mark.parametrize("name", SUBCOMMANDS)
 def test_json_option_needs_no_value(name: str) -> None:
-    for option in VERBS[name].params:
+    for option in SUBCOMMANDS[name].params:
         if "--json" in option.opts:
             assert isinstance(option, click.Option)
             assert option.is_flag or option.flag_value == "-"
         assert not {"--format", "-j"} & {*option.opts}
 
 
-@pytest.mark.parametrize("name", VERBS)
-def test_only_verbs_that_use_the_edition_have_the_option(name: str) -> None:
-    callback = VERBS[name].callback
+@pytest.mark.parametrize("name", SUBCOMMANDS)
+def test_only_subcommands_that_use_the_edition_have_the_option(name: str) -> None:
+    callback = SUBCOMMANDS[name].callback
     assert callback is not None
-    takes = any("--edition" in option.opts for option in VERBS[name].params)
+    takes = any("--edition" in option.opts for option in SUBCOMMANDS[name].params)
     assert takes == ("edition" in inspect.signature(callback).parameters)
 
 
 @pytest.mark.parametrize("words", ["{0} conform statement", "conform {0} statement {0}"])
-def test_edition_is_given_before_or_after_the_verb(words: str) -> None:
+def test_edition_is_given_before_or_after_the_subcommand(words: str) -> None:
     assert "edition: mycobot\n" in cobotwire(*words.format("--edition mycobot").split()).stdout
 
 

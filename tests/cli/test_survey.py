@@ -283,13 +283,13 @@ def test_any_key_stops_the_motion_and_the_file_holds_what_was_found(tmp_path: Pa
     assert any(fact["verdict"] == "confirmed" for fact in content["facts"])
 
 
-@pytest.mark.parametrize("verb", ["doctor", "identify"])
-def test_verb_detects_angles_in_tenths_of_degrees_from_the_coordinates(verb: str) -> None:
+@pytest.mark.parametrize("name", ["doctor", "identify"])
+def test_angles_in_tenths_of_degrees_are_detected_from_the_coordinates(name: str) -> None:
     table = editions.load("mycobot320").TABLE
     [change] = [arm.change for arm in WRONG_ARMS if arm.name == "tenths" and arm.change]
     shown = []
     for spoken in (table, change(table)):
         robot = spoken.robot._replace(start_angles=POSE)
         with PtyServer(SimulatedArm(spoken._replace(robot=robot), powered=True)) as server:
-            shown.append(cobotwire("--edition", "mycobot320", verb, server.url))
+            shown.append(cobotwire("--edition", "mycobot320", name, server.url))
     assert [("tenths" in done.stdout, done.returncode) for done in shown] == [(False, 0), (True, 1)]

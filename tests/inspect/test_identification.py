@@ -159,7 +159,7 @@ def test_given_baud_rate_and_urls_are_tried_once(monkeypatch: pytest.MonkeyPatch
     assert [rate for _, rate, _ in opened] == [57_600, 115_200, 115_200, 1_000_000]
 
 
-def test_identify_verb_prints_edition_firmware_and_evidence(arm: tuple[str, str]) -> None:
+def test_identify_subcommand_prints_edition_firmware_and_evidence(arm: tuple[str, str]) -> None:
     edition, url = arm
     result = run_program("identify", url, "--timeout", "0.3")
     assert (result.returncode, result.stderr) == (0, "")
@@ -188,7 +188,7 @@ def test_connect_names_the_candidates_if_neither_queries_nor_limits_decide() -> 
         ([], "", 4),
     ],
 )
-def test_identify_verb_has_json_and_an_exit_code_for_each_outcome(
+def test_identify_subcommand_has_json_and_an_exit_code_for_each_outcome(
     replies: list[list[bytes]], edition: str, code: int
 ) -> None:
     with ScriptedPeer(*replies) as peer:
@@ -199,7 +199,7 @@ def test_identify_verb_has_json_and_an_exit_code_for_each_outcome(
     assert report["evidence"][-1]["replied"] == bool(edition)
 
 
-def test_identify_verb_without_a_port_exits_with_3() -> None:
+def test_identify_subcommand_without_a_port_exits_with_3() -> None:
     assert run_program("identify", "/dev/nosuchport").returncode == 3
 
 

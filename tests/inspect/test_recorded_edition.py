@@ -22,13 +22,13 @@ def test_installed_edition_is_used_whatever_the_default_is() -> None:
     assert codec_of_recording("", "mycobot").table.edition == "mycobot"
 
 
-@pytest.mark.parametrize("verb", ["decode", "replay", "export"])
+@pytest.mark.parametrize("subcommand", ["decode", "replay", "export"])
 def test_recording_of_an_edition_that_is_not_installed_is_refused(
-    tmp_path: Path, verb: str
+    tmp_path: Path, subcommand: str
 ) -> None:
     path = recording(tmp_path / "arm.pcapng", polled(2), "mycobot999")
-    options = ["-o", str(tmp_path / "out")] if verb == "export" else []
-    ended = run(app, "cobotwire", verb, str(path), *options)
+    options = ["-o", str(tmp_path / "out")] if subcommand == "export" else []
+    ended = run(app, "cobotwire", subcommand, str(path), *options)
     assert ended.returncode == 2
     assert UNKNOWN in ended.stderr
     assert "frame" not in ended.stdout

@@ -116,7 +116,7 @@ def test_bars_are_few_and_have_round_widths(end: float, unit: float) -> None:
 
 
 def run(*words: str | Path) -> Result:
-    """Run the verb in this process, because matplotlib takes a second to import."""
+    """Run the subcommand in this process, because matplotlib takes a second to import."""
     return CliRunner().invoke(app, ["--edition", "mycobot280", "plot", *map(str, words)])
 
 
