@@ -61,15 +61,6 @@ def test_findings_do_not_depend_on_chunking(
     assert diagnose(codec, *[bytes([byte]) for byte in stream], listening=listening) == whole
 
 
-@given(LISTENING, st.data())
-def test_findings_are_the_same_for_both_codecs(listening: Listening, data: st.DataObject) -> None:
-    stream = data.draw(STREAMS)
-    one, other = (codecs.load(TABLE, name) for name in ("reference", "native"))
-    assert diagnose(one, stream, listening=listening) == diagnose(
-        other, stream, listening=listening
-    )
-
-
 @given(CODECS, st.data())
 def test_items_are_in_the_order_of_the_stream_and_have_descriptions(
     codec: Codec, data: st.DataObject

@@ -104,14 +104,22 @@ def check(
     assert summarized(codec, listening, accept, cut, lines=False)[1:] == expected[1:]
 
 
+def _received(table: Table, listening: Listening) -> st.SearchStrategy[bytes]:
+    """Draw streams in which frames are damaged."""
+    pieces = strategies.received(table, listening).map(lambda received: received.data)
+    return st.lists(pieces, max_size=6).map(b"".join)
+
+
 @pytest.mark.parametrize("edition", NATIVE)
 @given(listening=LISTENING, data=st.data())
-@settings(max_examples=25)
+@settings(max_examples=40)
 def test_summary_equals_diagnosis_frame_by_frame(
     edition: str, listening: Listening, data: st.DataObject
 ) -> None:
     table = editions.load(edition).TABLE
-    stream = data.draw(field.streams(table) | strategies.streams(table))
+    stream = data.draw(
+        field.streams(table) | strategies.streams(table) | _received(table, listening)
+    )
     check(NATIVE[edition], listening, stream, data.draw(strategies.real_frames(table)), data)
 
 
@@ -133,17 +141,6 @@ def test_summary_equals_diagnosis_for_any_table(
     if StreamSummary.reads(codec):
         frame = data.draw(random_tables.frames(table))
         check(codec, listening, data.draw(random_tables.streams(table)), frame, data)
-
-
-@given(LISTENING, st.data())
-@settings(max_examples=25)
-def test_summary_finds_the_same_ends_of_damaged_frames(
-    listening: Listening, data: st.DataObject
-) -> None:
-    codec = NATIVE["mycobot280"]
-    damaged = st.lists(strategies.received(codec.table, listening), max_size=6)
-    stream = b"".join(received.data for received in data.draw(damaged))
-    check(codec, listening, stream, data.draw(strategies.real_frames(codec.table)), data)
 
 
 FOOTERS = [found for size in range(1, 4) for found in combinations(range(-2, 3), size)]
