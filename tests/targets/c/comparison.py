@@ -10,9 +10,9 @@ from cobotwire_codegen.model import Edition
 from cobotwire_codegen.targets.c.messages import messages
 from cobotwire_codegen.targets.c.tables import Tables
 from targets.c.compiled import COMPILERS, SANITIZERS, program
-from targets.c.peer import CPeer, Event, Outcome, Read, comparable
+from targets.c.peer import CPeer, Outcome, Read, comparable
 from targets.comparison import Comparison, ToolMissing, compared
-from targets.vectors.comparison import PIECES, Record, read
+from targets.vectors.comparison import PIECES, Record, as_written, read
 from vectors import edition as edition_of
 
 
@@ -36,7 +36,7 @@ def validated(
     name: str = "",
 ) -> Comparison:
     """Run a document's vectors on the C code of an edition, which may be a changed one."""
-    with CPeer(program(edition, compiler, flags, name)) as peer:
+    with CPeer(program(edition, compiler, flags, name), edition) as peer:
         return Validator(edition, peer).compare(document)
 
 
@@ -131,14 +131,7 @@ class Validator:
         for size in PIECES:
             pieces = [(data[at : at + size], False) for at in range(0, len(data), size)]
             events, _ = self._peer.events(record["direction"], [*pieces, (b"", True)])
-            found = [self._as_written(event) for event in joined(events)]
-            yield from _unequal(f"in pieces of {size}", found, record["events"])
-
-    def _as_written(self, event: Event) -> Record:
-        place = {"offset": event.offset, "size": len(event.data)}
-        at, number = self._frame.offset("command"), self._frame.command_number
-        id = int.from_bytes(event.data[at : at + number.width], number.order)
-        return place | ({"frame": id} if event.reason == "ok" else {"noise": event.reason})
+            yield from _unequal(f"in pieces of {size}", as_written(events), record["events"])
 
     def _given(self, record: Record, key: str) -> list[Any]:
         """Return the numbers of a record in the order of the message's struct."""
@@ -150,17 +143,6 @@ class Validator:
                 found.append(len(numbers) // (stored.each * len(stored.cases[0])))
             found += numbers
         return found
-
-
-def joined(events: list[Event]) -> list[Event]:
-    """Join adjacent spans of noise that have the same reason; a frame has the reason ``ok``."""
-    found: list[Event] = []
-    for event in events:
-        if found and event.reason != "ok" and found[-1].reason == event.reason:
-            found[-1] = Event(event.reason, found[-1].offset, found[-1].data + event.data)
-        else:
-            found.append(event)
-    return found
 
 
 def _unequal(what: str, found: object, right: object) -> Iterator[str]:

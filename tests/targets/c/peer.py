@@ -7,7 +7,10 @@ import subprocess
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import NamedTuple
+from typing import NamedTuple, cast
+
+from cobotwire.codec.interface import Event, Frame, Noise, NoiseReason
+from cobotwire_codegen.model import Edition
 
 STATUS = (
     "ok",
@@ -42,14 +45,6 @@ class Read(NamedTuple):
     values: list[float]
 
 
-class Event(NamedTuple):
-    """A frame (``ok``) or a span of noise."""
-
-    reason: str
-    offset: int
-    data: bytes
-
-
 def comparable(value: float) -> float:
     """Return a number that equals itself: NaN becomes a number that no message carries."""
     return float(value) if value == value else 1e300
@@ -58,7 +53,8 @@ def comparable(value: float) -> float:
 class CPeer:
     """Talk to a harness in its own process; report what the sanitizers found."""
 
-    def __init__(self, program: Path) -> None:
+    def __init__(self, program: Path, edition: Edition) -> None:
+        self._frame = edition.frame
         self._process = subprocess.Popen(
             [program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
         )
@@ -142,7 +138,11 @@ class CPeer:
     def _events(self) -> Iterator[Event]:
         while self._u16():
             reason, offset, size = struct.unpack("=HQH", self._take(12))
-            yield Event(STATUS[reason], offset, self._take(size))
+            data, found = self._take(size), STATUS[reason]
+            number, at = self._frame.command_number, self._frame.offset("command")
+            id = int.from_bytes(data[at : at + number.width], number.order)
+            noise = Noise(offset, data, cast(NoiseReason, found))
+            yield Frame(offset, data, id) if found == "ok" else noise
 
     def names(self) -> list[list[str]]:
         """Return each message's name and the names of its fields."""
