@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 from typing import Any
@@ -11,11 +10,8 @@ import pytest
 
 import small_specs
 from cobotwire.protocol.errors import ProtocolError, UsageError
-from cobotwire_codegen.targets.vectors.document import document
-from targets.c.comparison import validated as validated_in_c
-from targets.c.compiled import missing
 from targets.expected import codec_of_edition
-from targets.vectors.comparison import CODECS, validated
+from targets.vectors.comparison import CODECS
 
 COMMANDS = """
 set_x:
@@ -64,12 +60,3 @@ def test_value_between_choices_is_refused_and_named(edition: Any, name: Any) -> 
         with pytest.raises(ProtocolError, match=re.escape("1, 2, 4")) as unread:
             codec.decode("request", bytes(data))
         assert (unread.value.reason, unread.value.offset) == ("bad-value", at)
-
-
-def test_vectors_and_targets_refuse_values_between_choices(edition: Any) -> None:
-    made = json.loads(document(edition))
-    refused = {record["name"] for record in made["rejected"]}
-    assert {"set_x request, plain 3", "set_x request, both 3"} <= refused, refused
-    assert validated(made, codec_of_edition(edition)).differences == []
-    if not missing("gcc"):
-        assert validated_in_c(made, edition, "gcc", ("-O0",), "choices").differences == []
