@@ -20,7 +20,6 @@ from cobotwire.protocol.numbers import raw_of_float
 from cobotwire.protocol.table import (
     Case,
     Command,
-    Direction,
     Field,
     Number,
     Table,
@@ -29,7 +28,6 @@ from cobotwire.protocol.table import (
 from json_tables import sample
 from random_formats import frame_formats
 
-WAYS: tuple[Direction, ...] = ("request", "reply")
 SCALES = st.sampled_from(
     [(1, 1), (1, 10), (-1, 10), (1, -10), (-1, 1), (3, -20), (-7, 100), (-1, -1), (1, 3)]
 )
@@ -198,8 +196,8 @@ def frames(draw: st.DrawFn, table: Table, *, unknown: bool = True) -> bytes:
     """Draw a frame of the table with any data bytes; with ``unknown`` also of any id and size."""
     command = draw(st.sampled_from(table.commands))
     # An event has no request, and some requests have no reply.
-    ways: list[Direction] = [way for way in WAYS if command.variants(way)]
-    direction = draw(st.sampled_from(ways))
+    directions = [each for each in strategies.DIRECTIONS if command.variants(each)]
+    direction = draw(st.sampled_from(directions))
     variant = draw(st.sampled_from(command.variants(direction)))
     id, size = command.id, variant.size
     if unknown and draw(st.integers(0, 4)) == 0:

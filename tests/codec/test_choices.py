@@ -10,8 +10,8 @@ import pytest
 
 import small_specs
 from cobotwire.protocol.errors import ProtocolError, UsageError
+from strategies import CODECS
 from targets.expected import codec_of_edition
-from targets.vectors.comparison import CODECS
 
 COMMANDS = """
 set_x:

@@ -9,9 +9,9 @@ from cobotwire import codec as codecs
 from cobotwire.protocol.table import Check, Crc, FrameFormat, Variant
 from cobotwire_codegen.catalogue import CRCS
 from cobotwire_codegen.wire import remainder
+from strategies import CODECS
 
 DIGITS = b"123456789"
-NAMES: list[codecs.CodecName] = ["reference", "native"]
 # Fletcher: the sums of RFC 1145 are 0xDD and 0x15; modulo 255 they are 0xDE and 0x1E.
 OTHERS = {
     ("sum", 1): 0xDD,
@@ -36,7 +36,7 @@ def checked(check: Check, name: codecs.CodecName) -> bytes:
     return encoded[-check.width :]
 
 
-@pytest.mark.parametrize("codec", NAMES)
+@pytest.mark.parametrize("codec", CODECS)
 def test_crc_of_the_digits_equals_the_value_in_the_catalogue(codec: codecs.CodecName) -> None:
     for name, (*_, value) in CRCS.items():
         crc = Crc(*CRCS[name][:-1])
@@ -51,7 +51,7 @@ def test_generator_computes_the_catalogue_too() -> None:
     }
 
 
-@pytest.mark.parametrize("codec", NAMES)
+@pytest.mark.parametrize("codec", CODECS)
 @pytest.mark.parametrize(("kind", "value"), OTHERS.items())
 def test_other_checks_have_their_published_value(
     kind: tuple[str, int], value: int, codec: codecs.CodecName

@@ -15,18 +15,17 @@ import random_formats
 from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Frame
 from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.table import Direction, Table
+from cobotwire.protocol.table import Table
 from cobotwire_codegen.wire import build_frame
 from json_tables import sample
 from random_formats import stated_frame
+from strategies import CODECS, DIRECTIONS
 from targets.expected import codec_of_edition
 
 CRC, SUM = sample("crc"), sample("sum")
-NAMES: list[codecs.CodecName] = ["reference", "native"]
-DIRECTIONS: list[Direction] = ["request", "reply"]
 
 
-@pytest.fixture(params=NAMES)
+@pytest.fixture(params=CODECS)
 def load(request: pytest.FixtureRequest) -> Callable[[Table], Codec]:
     """Return a function that makes codecs of one kind; each test runs with both kinds."""
     return lambda table: codecs.load(table, request.param)
@@ -55,7 +54,7 @@ def test_every_format_that_a_spec_can_state_is_sent_and_read_as_stated(data: st.
     for direction in DIRECTIONS:
         frame = stated_frame(record, id, content, address or 0, reply=direction == "reply")
         assert build_frame(edition.frame, edition.commands[0], direction, values, address) == frame
-        for name in NAMES:
+        for name in CODECS:
             codec = codec_of_edition(edition, name)
             assert (
                 codec.encode(

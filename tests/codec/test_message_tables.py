@@ -19,10 +19,10 @@ from cobotwire.codec.interface import Codec, Columns
 from cobotwire.codec.table_columns import LEADING
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Direction, Field, Number, Table, Variant
+from strategies import DIRECTIONS
 from vectors import sampled
 
 EDITIONS = sampled()
-DIRECTIONS: tuple[Direction, ...] = ("request", "reply")
 
 
 def legal(field: Field, number: Number) -> int:

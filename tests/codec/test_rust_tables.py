@@ -26,6 +26,7 @@ from cobotwire_codegen.publish import edition_json
 from probe import Probe, needed
 from random_editions import editions, sensors
 from session.twins import plain
+from strategies import DIRECTIONS
 from vectors import ROOT
 
 pytestmark = needed
@@ -92,7 +93,7 @@ def check_texts(data: st.DataObject, probe: Probe, path: Path, table: Table, tim
     codec, steps, expected = codecs.load(table, "reference"), list[Any](), list[str | None]()
     for _ in range(times):
         command = data.draw(st.sampled_from(table.commands))
-        direction = data.draw(st.sampled_from(random_tables.WAYS))
+        direction = data.draw(st.sampled_from(DIRECTIONS))
         values = data.draw(given_values(command.variants(direction)))
         frame = data.draw(near_frames(table))
         steps.append(["encode", str(path), direction, command.name, plain(values)])
@@ -157,7 +158,7 @@ def test_damaged_file_gives_table_or_text(probe: Probe, tmp_path: Path, name: st
         path.write_bytes(dice.choice([cut, json.dumps(changed(document, dice)).encode()]))
         sent = [(size, dice.choice(document["commands"])["id"]) for size in (2, 3, 5) * 9]
         frames = [f"fefe{size:02x}{command:02x}" + "fa" * (size - 1) for size, command in sent]
-        directions = dice.choices(random_tables.WAYS, k=len(frames))
+        directions = dice.choices(DIRECTIONS, k=len(frames))
         steps = [
             ["decode", str(path), direction, frame] for direction, frame in zip(directions, frames)
         ]

@@ -8,18 +8,16 @@ from functools import partial
 from itertools import chain
 from typing import Any
 
-from cobotwire import codec as codecs
 from cobotwire.codec.interface import Codec, Event, Noise
 from cobotwire.protocol.errors import ProtocolError, UsageError
 from cobotwire.protocol.table import Field, Number, Variant
 from cobotwire.session import text
 from framed_events import joined
-from strategies import codec_of
+from strategies import CODECS, codec_of
 from targets.built import built
 from targets.comparison import Comparison, compared
 
 Record = dict[str, Any]
-CODECS: tuple[codecs.CodecName, ...] = ("reference", "native")
 # A stream is fed in pieces of these sizes: byte by byte, in few bytes, and whole.
 PIECES = (1, 2, 7, 1000)
 

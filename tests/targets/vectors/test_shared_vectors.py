@@ -21,11 +21,11 @@ from cobotwire_codegen import lower
 from cobotwire_codegen.model import Enum, Field, Quantity
 from cobotwire_codegen.targets.vectors.document import document
 from random_editions import editions
-from strategies import TABLES, codec_of
+from strategies import CODECS, TABLES, codec_of
 from targets.built import built
 from targets.expected import codec_of_edition
 from targets.specs import SPECS, edition_of
-from targets.vectors.comparison import CODECS, Record, read, sample, validated
+from targets.vectors.comparison import Record, read, sample, validated
 from wrong_models import WRONG, with_wrong_angles
 
 EDITIONS = sorted(TABLES)

@@ -8,11 +8,10 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from cobotwire.capture import CaptureWriter, Interface, Packet
-from cobotwire.capture.packet import Direction as Way
+from cobotwire.capture import CaptureWriter, Direction, Interface, Packet
 from cobotwire.codec.interface import Listening
 
-WAYS: dict[Listening, Way] = {"request": "sent", "reply": "received", "both": "unknown"}
+DIRECTIONS: dict[Listening, Direction] = {"request": "sent", "reply": "received", "both": "unknown"}
 START_NS = 1_700_000_000_000_000_000
 # Nanoseconds between packets without a time: too short for a silence.
 STEP_NS = 1000
@@ -48,9 +47,8 @@ def serial(chunks: Sequence[Chunk], edition: str | Sequence[str]) -> bytes:
         named = edition if isinstance(edition, str) else edition[line]
         writer.interface(Interface(f"line {line}", named, 115200))
     for chunk in timed(chunks):
-        way = WAYS[chunk.direction]
-        time_ns = START_NS + chunk.at_ns
-        writer.packet(Packet(time_ns, way, chunk.data, "bytes", interface=chunk.line))
+        time_ns, direction = START_NS + chunk.at_ns, DIRECTIONS[chunk.direction]
+        writer.packet(Packet(time_ns, direction, chunk.data, "bytes", interface=chunk.line))
     writer.finish()
     return file.getvalue()
 
