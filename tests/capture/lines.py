@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 
 from cobotwire.capture import CaptureReader, CaptureWriter, Interface, Kind, Packet, Piece
 
-Way = Literal["sent", "received"]
+Direction = Literal["sent", "received"]
 
 
 class Chunk(NamedTuple):
     """One read or write of a client."""
 
     time: float
-    direction: Way
+    direction: Direction
     data: bytes
 
 
@@ -30,6 +30,7 @@ FRAMES = [
         "FE FE 03 10 01 FA",
     )
 ]
+DIRECTIONS: st.SearchStrategy[Direction] = st.sampled_from(["sent", "received"])
 SPANS = st.one_of(st.sampled_from(FRAMES), st.binary(max_size=40), st.just(b"\xfe" * 7))
 
 
@@ -40,11 +41,11 @@ def chunks(draw: st.DrawFn) -> list[Chunk]:
     time = 1000.0
     for _ in range(draw(st.integers(0, 12))):
         whole = b"".join(draw(st.lists(SPANS, max_size=3)))
-        way = draw(st.sampled_from(["sent", "received"]))
+        direction = draw(DIRECTIONS)
         cuts = sorted(draw(st.lists(st.integers(0, len(whole)), max_size=4)))
         for start, end in zip([0, *cuts], [*cuts, len(whole)]):
             time += draw(st.sampled_from([0.0, 1e-6, 0.003, 0.1, 0.7]))
-            made.append(Chunk(time, "sent" if way == "sent" else "received", whole[start:end]))
+            made.append(Chunk(time, direction, whole[start:end]))
     return made
 
 
@@ -88,6 +89,6 @@ def reader(data: bytes) -> CaptureReader:
     return CaptureReader(io.BytesIO(data), "test.pcapng")
 
 
-def line_bytes(packets: Iterable[Packet], way: Way) -> bytes:
+def line_bytes(packets: Iterable[Packet], direction: Direction) -> bytes:
     """Return all bytes of one direction."""
-    return b"".join(packet.data for packet in packets if packet.direction == way)
+    return b"".join(packet.data for packet in packets if packet.direction == direction)

@@ -40,11 +40,11 @@ def recorded(codec: Codec | None, given_chunks: list[Chunk]) -> list[Packet]:
     return list(reader(file.getvalue()))
 
 
-def pieces_of(packets: list[Packet], way: str) -> list[tuple[int, int]]:
+def pieces_of(packets: list[Packet], direction: str) -> list[tuple[int, int]]:
     """Return value and time of each byte of a direction, in order."""
     found: list[tuple[int, int]] = []
     for packet in packets:
-        if packet.direction == way:
+        if packet.direction == direction:
             times = [t for size, t in packet.pieces for _ in range(size)]
             found += zip(packet.data, times or [packet.time_ns] * len(packet.data))
     return found
@@ -57,15 +57,15 @@ def test_packets_of_a_direction_hold_every_byte_with_its_time(
     for codec in (None, codecs.load(TABLE)):
         packets = recorded(codec, given_chunks)
         start = time.time_ns() - time.monotonic_ns()
-        for way in ("sent", "received"):
-            bytes_ = [
-                (b, round(c.time * 1e9)) for c in given_chunks if c.direction == way for b in c.data
-            ]
-            found = pieces_of(packets, way)
-            assert [b for b, _ in found] == [b for b, _ in bytes_]
+        for direction in ("sent", "received"):
+            own = [chunk for chunk in given_chunks if chunk.direction == direction]
+            expected = [(byte, round(chunk.time * 1e9)) for chunk in own for byte in chunk.data]
+            found = pieces_of(packets, direction)
+            assert [byte for byte, _ in found] == [byte for byte, _ in expected]
             # The recorder adds the same offset to all times.
-            assert len({got - was for (_, got), (_, was) in zip(found, bytes_)}) <= 1
-            assert all(abs(got - was - start) < 10**10 for (_, got), (_, was) in zip(found, bytes_))
+            added = {got - given for (_, got), (_, given) in zip(found, expected)}
+            assert len(added) <= 1
+            assert all(abs(each - start) < 10**10 for each in added)
         assert all(packet.data for packet in packets)
 
 
@@ -102,8 +102,9 @@ def test_traffic_of_a_client_is_recorded(server: PtyServer, tmp_path: Path) -> N
         packets = list(capture)
     assert capture.finished
     assert capture.interfaces == [(server.url, "mycobot", 115200)]
-    for way in ("sent", "received"):
-        assert line_bytes(packets, way) == b"".join(t.data for t in traffic if t.direction == way)
+    for direction in ("sent", "received"):
+        data = b"".join(chunk.data for chunk in traffic if chunk.direction == direction)
+        assert line_bytes(packets, direction) == data
     assert {packet.kind for packet in packets} == {"frame"}
     assert abs(packets[0].time_ns - time.time_ns()) < 60e9
 

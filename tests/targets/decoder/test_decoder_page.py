@@ -29,7 +29,7 @@ from vectors import ROOT
 
 PAGE = (ROOT / "docs" / "decoder.md").read_text()
 STREAMS = 2
-WAYS = ("both", "request", "reply")
+DIRECTIONS = ("both", "request", "reply")
 NOTATIONS = [
     ("b'\\xfe\\xfe\\x02\\x20\\xfa'", "request at 0"),
     ("[0xFE, 0xFE, 0x2, 0x20, 0xFA]", "request at 0"),
@@ -106,7 +106,7 @@ def _cells(shown: str) -> list[list[str]]:
 def test_decoder_page_offers_every_edition_of_the_spec(tab: Tab, page: Path) -> None:
     options = "[...document.querySelectorAll('option')].map((each) => each.value)"
     found = _open(tab, page).evaluate(options)
-    assert found[: -len(WAYS)] == sorted(path.stem for path in edition_files(ROOT))
+    assert found[: -len(DIRECTIONS)] == sorted(path.stem for path in edition_files(ROOT))
 
 
 EXPLAINED = [

@@ -28,9 +28,9 @@ def line(edition: str, *frames: tuple[int, Listening, str, tuple[object, ...]]) 
     """Return a line's frames from their time (ms), direction, command and values."""
     codec = codec_of(edition, "reference")
     return [
-        Chunk(0, way, codec.encode(name, way, values), at * MS)
-        for at, way, name, values in frames
-        if way != "both"
+        Chunk(0, direction, codec.encode(name, direction, values), at * MS)
+        for at, direction, name, values in frames
+        if direction != "both"
     ]
 
 

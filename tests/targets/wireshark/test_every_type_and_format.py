@@ -19,7 +19,7 @@ from cobotwire_codegen.emit import Target, write
 from cobotwire_codegen.model import Edition
 from cobotwire_codegen.targets.wireshark import render_wireshark
 from random_editions import sensors
-from strategies import chunked
+from strategies import DIRECTIONS, chunked
 from targets.expected import codec_of_edition
 from targets.specs import SPECS, edition_of
 from targets.wireshark.comparison import Line, all_compared
@@ -27,7 +27,7 @@ from targets.wireshark.dissecting import needs_tshark
 
 pytestmark = needs_tshark
 NUMBERS = itertools.count()
-WAYS: tuple[Listening, ...] = get_args(Listening)
+LISTENING: tuple[Listening, ...] = get_args(Listening)
 
 
 def lines_of(edition: Edition) -> Iterator[Line]:
@@ -39,9 +39,10 @@ def lines_of(edition: Edition) -> Iterator[Line]:
             yield Line(vector.name, vector.direction, [frame])
             yield Line(f"{vector.name}, damaged, whole", vector.direction, [broken + frame])
             yield Line(f"{vector.name}, in pieces", "both", pieces)
-    for way in ("request", "reply"):
-        frames = [each.frame for each in edition.vectors if each.frame and each.direction == way]
-        yield Line(f"every {way} with noise between", way, [frame + b"\xff" for frame in frames])
+    for direction in DIRECTIONS:
+        own = (each.frame for each in edition.vectors if each.direction == direction)
+        noisy = [frame + b"\xff" for frame in own if frame]
+        yield Line(f"every {direction} with noise between", direction, noisy)
 
 
 @st.composite
@@ -59,7 +60,7 @@ def drawn_lines(draw: st.DrawFn, edition: Edition) -> list[Line]:
     for _ in range(4):
         stream = b"".join(draw(st.lists(pieces, min_size=1, max_size=9)))
         chunks = [chunk for chunk in draw(chunked(stream)) if chunk]
-        found.append(Line(stream.hex(" "), draw(st.sampled_from(WAYS)), chunks))
+        found.append(Line(stream.hex(" "), draw(st.sampled_from(LISTENING)), chunks))
     return [line for line in found if line.chunks]
 
 
