@@ -29,7 +29,8 @@ pub(crate) struct Claim {
 pub struct Rules {
     frame: FrameFormat,
     legal: Legal,
-    /// Whether frames are `h h LEN id`, and LEN counts all after itself, as in nearly all formats.
+    /// Whether frames are `h h LEN id`, and LEN counts all bytes after itself, as in nearly all
+    /// formats.
     plain: bool,
     /// The header of a plain format.
     first_two: [u8; 2],
@@ -81,8 +82,8 @@ impl Rules {
         &self.legal
     }
 
-    /// Return the header, if LEN and id directly follow its two bytes and LEN counts all after
-    /// itself.
+    /// Return the header, if LEN and id directly follow its two bytes and LEN counts all bytes
+    /// after itself.
     pub(crate) fn plain_header(&self) -> Option<[u8; 2]> {
         self.plain.then_some(self.first_two)
     }
@@ -137,8 +138,8 @@ impl Rules {
         }
     }
 
-    /// Return the LEN and the id of a candidate; `None` if they have not come yet. The parts are
-    /// validated in their order on the wire, each when its last byte has come.
+    /// Return the LEN and the id of a candidate; `None` if they have not arrived yet. The parts are
+    /// validated in wire order, each as soon as its last byte has arrived.
     pub(crate) fn claim(&self, rest: &[u8]) -> Result<Option<Claim>, Reason> {
         let header = self.frame.header.iter().zip(rest);
         if header.into_iter().any(|(byte, given)| byte != given) {
@@ -158,7 +159,7 @@ impl Rules {
         let bad_length = length_read
             .filter(|read| !self.legal.is_length(*read))
             .map(|_| (length.at, Reason::BadLength));
-        // After LEN, the two are validated together.
+        // If the id follows LEN, the caller validates both together.
         let bad_id = id_read
             .filter(|read| id.at < length.at && !self.legal.is_id(*read))
             .map(|_| (id.at, Reason::UnknownId));

@@ -16,7 +16,7 @@ pub(crate) struct Crossing {
     pub(crate) data: Vec<u8>,
     /// The number of kept bytes; the new chunk starts there.
     pub(crate) seam: usize,
-    /// The position of its first byte in the stream.
+    /// The position of the first kept byte in the stream.
     pub(crate) offset: u64,
 }
 

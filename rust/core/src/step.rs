@@ -1,7 +1,7 @@
-//! Numbers in the form in which short calls read them.
+//! The fast path for reading one number.
 //!
-//! A [`Number`] describes every number that a table can have. Most are plain integers of one or two
-//! bytes; what reading one of these needs is prepared here, in less than a cache line.
+//! A [`Number`] describes every number that a table can have, but most are plain integers of one or
+//! two bytes. A [`Step`] has only what reading one of these needs, in less than a cache line.
 
 use crate::number::{Number, Order, Value};
 
@@ -53,7 +53,7 @@ impl Step {
         }
     }
 
-    /// Return the physical value in the data, as [`Step::raw`] finds it.
+    /// Return the physical value in the data; `None` and `Err` mean the same as for [`Step::raw`].
     #[inline(always)]
     pub(crate) fn value(&self, data: &[u8]) -> Result<Option<Value>, usize> {
         Ok(self.raw(data)?.map(|raw| self.physical(raw)))
@@ -96,7 +96,7 @@ impl Step {
     }
 }
 
-/// Return the nearest number of 32 bits: numbers of two bytes compare the same with it.
+/// Return the nearest 32-bit number; numbers of two bytes compare the same with it.
 fn cut(number: i64) -> i32 {
     number.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
 }

@@ -90,7 +90,7 @@ impl Templates {
 }
 
 impl Template {
-    /// Return the template of a variant; `None` if it has other fields, or its frame is too long.
+    /// Return the template of a variant; `None` if a field is not plain, or the frame is too long.
     fn new(
         format: &FrameFormat,
         command: &Command,

@@ -10,7 +10,7 @@ use crate::number::{Encoding, Number};
 /// A value that its field does not allow.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BadValue<V> {
-    /// Index of the variant among the command's in that direction.
+    /// Index of the variant among the command's variants in that direction.
     pub variant: usize,
     /// Index of the field.
     pub field: usize,
@@ -202,7 +202,7 @@ impl<V: Given> Writer<'_, V> {
         }
     }
 
-    /// Write a text of that many bytes.
+    /// Write a text of `size` bytes.
     fn text(
         &mut self,
         place: Place<'_>,
@@ -251,7 +251,7 @@ impl<V: Given> Writer<'_, V> {
         Ok(())
     }
 
-    /// Return the raw value of one value.
+    /// Return the raw value of a caller's value.
     fn checked(&self, place: Place<'_>, number: &Number, value: V) -> Result<i64, EncodeError<V>> {
         if place.field.varies
             && !place.field.many

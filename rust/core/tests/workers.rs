@@ -1,4 +1,4 @@
-//! Several threads find in a stream what one thread finds, wherever it is cut.
+//! Several threads find in a stream what one thread finds, wherever the stream is cut.
 
 use std::sync::Arc;
 
@@ -58,7 +58,7 @@ fn report(
     Report { offsets, columns }
 }
 
-/// Compare threads that cut at these strides with one thread, in all directions.
+/// Compare several threads, which cut the stream at these strides, with one thread.
 fn check(table: &Arc<Table>, chunks: &[&[u8]], cuts: impl IntoIterator<Item = (usize, usize)>) {
     let cuts: Vec<_> = cuts.into_iter().collect();
     for listening in LISTENING {
@@ -95,8 +95,8 @@ fn stream(dice: &mut Dice, frames: &[Vec<u8>], size: usize, noise: usize) -> Vec
     stream
 }
 
-/// A query, a motion and a reply of two variants: each with a footer; with an address and a sum;
-/// with a CRC.
+/// The same seven frames in three formats: with a footer, with an address and a sum, and with a
+/// CRC.
 const FAMILIES: [[&str; 7]; 3] = [
     [
         "FE FE 02 20 FA",
@@ -208,7 +208,7 @@ fn long_stream_cut_and_chunked_anywhere_has_the_results_of_one_thread() {
 }
 
 #[test]
-fn noise_that_spans_many_pieces_is_one_span() {
+fn noise_across_many_cuts_is_one_span() {
     let (table, frames) = family(0);
     for byte in [0x00, 0xFE] {
         let noise = vec![byte; 300_000];
@@ -232,7 +232,7 @@ fn guess_that_never_agrees_with_the_scan_does_not_change_the_result() {
     frame[16] = 0xFA;
     let stream = frame.repeat(16_000);
     for shift in [0, 3, 8, 9, 16] {
-        // Without the first header, the other frames are those of the stream.
+        // Without the first header, the scan of the stream finds the other frames.
         check(&table, &[&stream[shift..]], [(2, 100_003)]);
     }
     let short = &stream[..750];

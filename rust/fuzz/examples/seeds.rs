@@ -1,6 +1,6 @@
-//! Writes the initial corpus: `seeds FOLDER` makes a folder for each target there, with a file for
-//! a frame of each variant of each table, for all these frames of a table in a row, and for each
-//! input of `tests/found`.
+//! Writes the initial corpus: `seeds FOLDER` makes a folder there for each target. The files in it
+//! hold one frame of each variant, all frames of each table in a row, and the inputs of
+//! `tests/found`; random bytes for targets that make their own tables or recordings.
 
 use std::path::Path;
 use std::{env, fs, io};
@@ -98,6 +98,8 @@ fn table(name: &str) -> usize {
 
 fn seed(subject: usize, listening: Listening, unknown: bool, stream: &[u8]) -> Vec<u8> {
     let mut ways = LISTENING.iter();
-    let listening = ways.position(|way| *way == listening).expect("all are");
+    let listening = ways
+        .position(|way| *way == listening)
+        .expect("LISTENING has every value");
     [&Input::head(subject, listening, unknown), stream].concat()
 }

@@ -1,4 +1,5 @@
-//! Turns fuzz bytes into a recording: most of its blocks are right, so that fuzzing gets far.
+//! Turns fuzz bytes into a recording: most of its blocks are valid, so that the reader gets beyond
+//! the first one.
 
 use crate::bytes::Bytes;
 use crate::subjects::Subject;

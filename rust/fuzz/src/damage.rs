@@ -9,8 +9,8 @@ const OTHERS: &str = r#"[null, true, -1, 0, 1, 2, 8, 255, 16384, 1e300, 0.5, "1/
     -9223372036854775808, 9223372036854775807, 18446744073709551615, "9223372036854775807/3",
     "text", "bits", "joint", "float", [[]], [0, 1]]"#;
 
-/// Return the file of a document with a few of its commands, in which up to three random values are
-/// replaced by values of the same or of another type.
+/// Return the file of an edition with at most eight of its commands. Up to three random values in
+/// it are replaced by values of the same or of another type.
 pub fn changed(document: &Value, bytes: &mut Bytes<'_>) -> Vec<u8> {
     let mut changed = document.clone();
     let commands = changed["commands"].as_array_mut().unwrap();

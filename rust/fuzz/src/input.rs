@@ -1,6 +1,5 @@
 //! Turns fuzz bytes into a table, a direction, a stream and its chunks.
-//!
-//! Four bytes decide everything but the stream, so four bytes and a vector are a seed.
+//! The first four bytes decide everything but the stream, so four bytes and a stream make a seed.
 
 use cobotwire_core::{Framer, Rules};
 
@@ -86,9 +85,9 @@ pub struct Chunk<'a> {
 /// How a stream is cut.
 #[derive(Clone, Copy, Debug)]
 pub struct Cutting {
-    /// Picks the largest chunk.
+    /// Picks the size of the largest chunk.
     pub class: u8,
-    /// Picks the sizes.
+    /// Picks the sizes of the chunks.
     pub seed: u8,
     /// Whether silence follows some chunks.
     pub flushes: bool,

@@ -26,7 +26,7 @@ pub type Span = (usize, Option<Reason>);
 #[derive(Clone, Debug)]
 pub struct Oracle {
     frame: FrameFormat,
-    /// The ids and LENs of messages; a message without an id has every id.
+    /// The ids and LENs of messages; a message without an id matches every id.
     legal: HashSet<(Option<u16>, usize)>,
     ids: HashSet<Option<u16>>,
     lengths: HashSet<usize>,
@@ -73,7 +73,7 @@ impl Oracle {
         number(self.frame.layout.id, frame).expect("a frame has an id")
     }
 
-    /// Return the verdict on the start of `rest`; it is decided by the earliest byte that can.
+    /// Return the verdict on the start of `rest`; the earliest byte that can decide it does.
     pub fn look(&self, rest: &[u8]) -> Found {
         let starts = self.frame.header.iter().zip(rest);
         if starts.into_iter().any(|(must, is)| must != is) {
@@ -87,7 +87,7 @@ impl Oracle {
             ..
         } = self.frame.layout;
         let (mut length, mut id) = (None, None);
-        // The reason that is known at the earliest byte is the one that is reported.
+        // The reason that the earliest byte shows is reported.
         for at in self.frame.header.len()..self.frame.layout.data_at {
             if rest.len() <= at {
                 return Found::Waits;
@@ -172,7 +172,7 @@ pub fn length_of(frame: &FrameFormat, direction: Direction, data: usize) -> usiz
     (start + data + size_of_end(frame)).saturating_sub(frame.layout.overhead)
 }
 
-/// Return LEN or the id, if it has come.
+/// Return LEN or the id, if it has arrived.
 pub fn number(part: Part, bytes: &[u8]) -> Option<u16> {
     let bytes = bytes.get(part.at..part.end())?;
     let digits: Vec<u16> = bytes.iter().map(|byte| u16::from(*byte)).collect();

@@ -55,7 +55,7 @@ impl Body<'_> {
             .fold(0, |all, byte| all << 8 | u64::from(*byte))
     }
 
-    /// Return the last value of each option after `at`.
+    /// Return the options after `at`, the last one first, so that `option` finds the last value.
     fn options(&self, mut at: usize) -> Result<Vec<(u64, Vec<u8>)>, Fault> {
         let mut all = vec![];
         while at < self.bytes.len() {

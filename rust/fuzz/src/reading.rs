@@ -20,8 +20,8 @@ pub fn read(
     Some(numbers(table, direction, frame, of)?.map(|found| decoded(table, found, frame)))
 }
 
-/// Return the result of reading a received frame. In both directions, variants of requests come
-/// before those of replies.
+/// Return the result of reading a received frame. If it may have either direction, variants of
+/// requests come before those of replies.
 pub fn received(
     table: &Table,
     listening: Listening,

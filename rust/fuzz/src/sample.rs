@@ -1,10 +1,10 @@
-//! Values to encode, as a caller may have them.
+//! Values to encode, as a caller passes them.
 
 use std::convert::Infallible;
 
 use cobotwire_core::{Encoding, Given, Row, Unread, ValueFault};
 
-/// A value as a caller may have it.
+/// A value as a caller passes it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample {
     Integer(i64),

@@ -1,4 +1,5 @@
-//! Makes streams from a byte script: legal frames, damaged frames, and other bytes of a transport.
+//! Makes streams from a byte script: legal frames, damaged frames, and other bytes that occur on a
+//! transport.
 //!
 //! Random bytes rarely form a long legal frame, and never a noisy stream full of frames. A script
 //! of a few bytes produces both, so the fuzzer reaches the code that handles them.
@@ -173,7 +174,7 @@ fn data(variant: &Variant, script: &mut Bytes<'_>) -> Vec<u8> {
     }
     let mut bytes = Vec::new();
     for (field, raw_values) in fields.iter().zip(&raw_values) {
-        // The cases of a field have the same size, but may divide it into other numbers.
+        // The cases of a field have the same size, but may divide it into different numbers.
         let mut cases = field.cases.iter();
         let case = cases.find(|case| case.numbers.len() == raw_values.len());
         let numbers = case.map_or(&[][..], |case| &case.numbers);

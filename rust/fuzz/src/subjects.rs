@@ -1,4 +1,4 @@
-//! The tables that are fuzzed: every edition, and the samples of features that no edition has.
+//! The tables that are fuzzed: two editions, and samples of features that these editions lack.
 
 use std::sync::{Arc, LazyLock, OnceLock};
 
@@ -8,7 +8,7 @@ use cobotwire_table::Edition;
 use crate::oracle::Oracle;
 use crate::script;
 
-/// The files of the tables; a new edition is a new line here.
+/// The files of the tables.
 const FILES: [&[u8]; 7] = [
     include_bytes!("../../../python/cobotwire/editions/mycobot/edition.json"),
     include_bytes!("../../../python/cobotwire/editions/mycobot280/edition.json"),
@@ -49,7 +49,7 @@ impl Subject {
         &self.oracles[2 * listening + usize::from(unknown)]
     }
 
-    /// Return the core's rules for the same.
+    /// Return the core's rules for one of [`LISTENING`], by its index.
     pub fn rules(&self, listening: usize, unknown: bool) -> &Rules {
         &self.rules[2 * listening + usize::from(unknown)]
     }

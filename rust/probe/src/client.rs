@@ -1,5 +1,5 @@
-//! A client at the other end of a pipe: calls come in and their results go out, one JSON object a
-//! line. Every write is reported with its times, by the monotonic clock of the machine.
+//! A client that a test controls: it reads calls from standard input and prints their results, one
+//! JSON object per line. It also prints each write, with start and end by the monotonic clock.
 //!
 //! `tests/probe_client.py` is the other end.
 
@@ -37,8 +37,9 @@ struct Probe {
     tasks: BTreeMap<u64, AbortHandle>,
 }
 
-/// Serve a client of the edition in `arguments`, on a URL, with options as JSON: the options of
-/// a client, in seconds; `tasks` for the asynchronous client; `small` for the smallest socket buffer.
+/// Serve a client. `arguments` are the file of its edition, its URL, and options as JSON: those of
+/// a client, with times in seconds; `tasks` for the asynchronous client; `small` for the smallest
+/// socket buffer.
 pub fn serve(mut arguments: impl Iterator<Item = String>) -> io::Result<()> {
     let mut next = || arguments.next().unwrap_or_default();
     let mut probe = Probe {

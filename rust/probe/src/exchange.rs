@@ -99,7 +99,7 @@ impl Open {
         events.iter().map(|event| self.event(event)).collect()
     }
 
-    /// Return the observable state of the exchange; this takes the outcomes.
+    /// Return the observable state of the exchange, and take the outcomes of requests that have ended.
     fn look(&mut self, now: Nanos) -> Json {
         let exchange = &mut self.exchange;
         let tickets = self.requests.iter().enumerate();
@@ -137,7 +137,7 @@ impl Open {
         )
     }
 
-    /// Return the name of an event, its command, what it says, and its bytes.
+    /// Return the name of an event, its command, its content, and its bytes.
     fn event(&self, event: &Event) -> Json {
         let (command, says) = match event {
             Event::Noise { reason, .. } => (None, json!(reason.word())),

@@ -1,7 +1,7 @@
 //! Serves the Python tests: each line of input is a list of steps in JSON, and each line of output
 //! the list of their results. With the argument `client` it is a client instead: see `client.rs`.
 
-// A test with a wrong step fails: the program ends.
+// A wrong step is a mistake in a test: the program panics, and the test fails.
 #![allow(clippy::indexing_slicing, clippy::unwrap_used)]
 
 #[cfg(unix)]

@@ -1,6 +1,5 @@
 //! A descriptor that becomes readable at a given time.
-//!
-//! Event loops need it because they wait for whole milliseconds.
+//! Event loops need it, because they round their waits to milliseconds.
 
 use std::os::fd::{AsRawFd, OwnedFd, RawFd};
 use std::time::Duration;
@@ -37,7 +36,7 @@ impl AlarmClock {
         self.0.as_raw_fd()
     }
 
-    /// Make it readable from a given time on, in seconds of `time.monotonic`, and not before; None: never.
+    /// Make the descriptor readable from the time `due` on, in seconds of `time.monotonic`; None: never.
     #[pyo3(signature = (due, /))]
     fn set(&self, due: Option<f64>) -> PyResult<()> {
         let wakes_at = due.map_or(NEVER, |due| {

@@ -186,8 +186,7 @@ impl NativeColumnReader {
     }
 }
 
-/// Return the rows that are not empty, each with what belongs to it, in the order of the table, as
-/// the reference does.
+/// Return the pairs with rows that are not empty, in the order of the table, as the reference does.
 pub fn filled<T>(rows: impl Iterator<Item = (Rows, T)>) -> Vec<(Rows, T)> {
     let mut all: Vec<_> = rows.filter(|(rows, _)| !rows.offsets.is_empty()).collect();
     all.sort_by_key(|(rows, _)| {

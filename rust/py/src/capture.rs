@@ -99,7 +99,7 @@ impl NativeCaptureReader {
         state.editions.error.take().map_or(Ok(()), Err)
     }
 
-    /// End the file, and stop waiting for more bytes.
+    /// Report the end of the file: no more bytes follow.
     fn end(&self, py: Python<'_>) -> PyResult<()> {
         self.state.get(py)?.core.finish();
         Ok(())
@@ -124,7 +124,7 @@ impl NativeCaptureReader {
         PyTuple::new(py, all?)
     }
 
-    /// The name of the program that wrote the file, and where reading stands.
+    /// The name of the program that wrote the file, the bytes read, and whether the file is complete.
     #[getter]
     fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let state = self.state.get(py)?;

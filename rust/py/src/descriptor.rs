@@ -17,7 +17,7 @@ use rustix::io::{Errno, read, write};
 
 /// The most bytes that one call reads.
 const READ_SIZE: usize = 4096;
-/// No wait takes longer than this many seconds, which every clock can add.
+/// No wait takes longer than this many seconds, which can be added to every clock's time.
 const LONGEST: f64 = 1e9;
 const AT_ONCE: Timespec = Timespec {
     tv_sec: 0,
@@ -46,7 +46,7 @@ fn write_now(py: Python<'_>, descriptor: RawFd, data: &[u8]) -> PyResult<usize> 
 }
 
 /// Read the received bytes, as soon as there are any; `b""` is the end of the data. Return None if
-/// nothing came within `timeout` seconds, or before `alarm` became readable.
+/// nothing arrived within `timeout` seconds, or before `alarm` became readable.
 #[pyfunction]
 #[pyo3(signature = (descriptor, timeout, alarm, /))]
 fn read_within<'py>(
@@ -101,7 +101,7 @@ impl Wait<'_> {
     }
 }
 
-/// Return whether a descriptor can be read, or is gone; wait for that if `wait` says so.
+/// Return whether a descriptor can be read or has hung up; with `wait`, wait for that.
 fn is_ready(
     py: Python<'_>,
     descriptor: BorrowedFd<'_>,
@@ -127,7 +127,7 @@ fn is_ready(
     }
 }
 
-/// Return whether a descriptor can be read now, or is gone.
+/// Return whether a descriptor can be read now or has hung up.
 fn can_be_read(descriptor: BorrowedFd<'_>) -> Result<bool, Errno> {
     let mut polled = [PollFd::from_borrowed_fd(descriptor, PollFlags::IN)];
     poll(&mut polled, Some(&AT_ONCE)).map(|count| count > 0)

@@ -7,7 +7,7 @@ use pyo3::types::{PyAny, PyString};
 use crate::given::Object;
 use crate::names::Names;
 
-/// Return the error of a value that its field does not allow.
+/// Return the error for a value that its field does not allow.
 pub fn bad_value(variant: &Bound<'_, PyAny>, bad: BadValue<Object<'_>>) -> PyErr {
     let make = || {
         let (field, case) = field_and_case(variant, bad.field, bad.case)?;
@@ -26,7 +26,7 @@ pub fn bad_value(variant: &Bound<'_, PyAny>, bad: BadValue<Object<'_>>) -> PyErr
     raised(make())
 }
 
-/// Return the error of a number of values that no variant has.
+/// Return the error for a number of values that no variant takes.
 pub fn bad_variant(
     command: &Bound<'_, PyAny>,
     direction: &Bound<'_, PyAny>,
@@ -41,36 +41,36 @@ pub fn bad_variant(
     }))
 }
 
-/// Return the error of a word that is not a direction.
+/// Return the error for a word that is not a direction.
 pub fn bad_direction(given: &Bound<'_, PyAny>) -> PyErr {
     let py = given.py();
     raised(Names::get(py).and_then(|names| names.reject_direction.bind(py).call1((given,))))
 }
 
-/// Return the error of an object that another thread uses.
+/// Return the error for an object that another thread uses.
 pub fn shared(py: Python<'_>, name: &str) -> PyErr {
     raised(Names::get(py).and_then(|names| names.reject_shared.bind(py).call1((name,))))
 }
 
-/// Return the error of an offset at which no stream can start.
+/// Return the error for an offset at which no stream can start.
 pub fn bad_offset(given: &Bound<'_, PyAny>) -> PyErr {
     let py = given.py();
     raised(Names::get(py).and_then(|names| names.reject_offset.bind(py).call1((given,))))
 }
 
-/// Return the error of a number of threads that cannot read.
+/// Return the error for a number of threads that cannot read.
 pub fn bad_workers(given: &Bound<'_, PyAny>) -> PyErr {
     let py = given.py();
     raised(Names::get(py).and_then(|names| names.reject_workers.bind(py).call1((given,))))
 }
 
-/// Return the error of an address that the frame format does not have.
+/// Return the error for an address that the frame format does not have.
 pub fn bad_address(given: &Bound<'_, PyAny>, addresses: &Bound<'_, PyAny>) -> PyErr {
     let py = given.py();
     raised(Names::get(py).and_then(|names| names.reject_address.bind(py).call1((given, addresses))))
 }
 
-/// Return the error of a raw value that its field does not allow.
+/// Return the error for a raw value that its field does not allow.
 pub fn bad_raw(
     command: &Bound<'_, PyAny>,
     variant: &Bound<'_, PyAny>,
@@ -85,7 +85,7 @@ pub fn bad_raw(
     raised(make())
 }
 
-/// Return the error of bytes that are not one whole legal frame.
+/// Return the error for bytes that are not one whole legal frame.
 pub fn bad_frame(
     table: &Bound<'_, PyAny>,
     direction: &Bound<'_, PyAny>,

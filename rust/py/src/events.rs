@@ -11,8 +11,8 @@ use crate::names::Names;
 
 /// Events that are not yet Python's objects.
 ///
-/// The framer is locked while they come, and making an object can start a collection of garbage,
-/// which may run any code of Python's. So the objects are made afterwards.
+/// The framer is locked while it reports events. Making a Python object can start a garbage
+/// collection, which may run any Python code, so the objects are made afterwards.
 #[derive(Default)]
 pub struct Events(Vec<Found>);
 

@@ -83,7 +83,7 @@ impl<'py> Given for Object<'py> {
         if !like {
             return Ok(None);
         }
-        // As the reference does, whatever the items of a memoryview are.
+        // Python's `bytes` converts, as in the reference; it accepts a memoryview of any items.
         let class = object.py().get_type::<PyBytes>();
         let bytes = class.call1((object,)).map_err(Unread::Foreign)?;
         bytes.extract().map(Some).map_err(Unread::Foreign)
@@ -133,11 +133,11 @@ impl Object<'_> {
 
     /// Convert an exact `int`, if it fits.
     fn small(&self) -> Result<i64, Unread<PyErr>> {
-        // The only possible error is that it is too large.
+        // The only possible error is that the integer is too large.
         self.0.extract().map_err(|_: PyErr| Unread::Beyond)
     }
 
-    /// Return the fault that a failed conversion means.
+    /// Return the fault that the error of a conversion stands for.
     fn sorted(&self, error: PyErr, overflow: Option<ValueFault>) -> Unread<PyErr> {
         let py = self.0.py();
         match overflow {

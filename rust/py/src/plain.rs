@@ -56,7 +56,7 @@ fn length(items: &Bound<'_, PyAny>) -> Option<usize> {
     }
 }
 
-/// Return an item of an exact tuple or list, if it has as many.
+/// Return an item of an exact tuple or list; None if it has too few, and for other objects.
 #[inline]
 fn item<'py>(items: &Bound<'py, PyAny>, index: usize) -> Option<Bound<'py, PyAny>> {
     if items.is_exact_instance_of::<PyTuple>() {

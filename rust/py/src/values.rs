@@ -24,7 +24,7 @@ pub fn row<'py>(values: &Bound<'py, PyAny>) -> PyResult<Objects<'py>> {
 /// Return decoded values, as the tuple that a message holds.
 pub fn objects<'py>(py: Python<'py>, values: &[Value]) -> PyResult<Bound<'py, PyTuple>> {
     match values {
-        // A message of one field, as most are.
+        // A message of one field, a row; most messages are like this.
         [Value::Row(count), row @ ..] if row.len() == *count => {
             let all = PyTuple::new(py, [numbers(py, row)?])?;
             untrack(&all);
@@ -105,7 +105,7 @@ fn mixed<'py>(py: Python<'py>, mut values: &[Value]) -> PyResult<Bound<'py, PyTu
     PyTuple::new(py, all)
 }
 
-/// Return one value; what it consists of is taken from `rest`.
+/// Return one value; its elements, if any, are taken from `rest`.
 fn one<'py>(py: Python<'py>, value: Value, rest: &mut &[Value]) -> PyResult<Bound<'py, PyAny>> {
     Ok(match value {
         Value::Row(count) => numbers(py, take(rest, count))?.into_any(),

@@ -9,7 +9,8 @@ mod window;
 pub use six::Six;
 pub use window::{Pattern, SEEN, WINDOW, Window};
 
-/// Request that memory near `bytes`, which may end before it, is loaded into the cache.
+/// Load the memory `ahead` bytes after the start of `bytes` into the cache, also if `bytes` is
+/// shorter.
 #[inline(always)]
 pub fn prefetch(bytes: &[u8], ahead: usize) {
     #[cfg(target_arch = "x86_64")]

@@ -4,7 +4,7 @@
 #[cfg(target_arch = "x86_64")]
 const NUMBERS: usize = 6;
 
-/// The rules of the numbers of a row. The last two of each array belong to no number.
+/// How the six numbers of a row are checked and converted. The last two of each array are unused.
 #[derive(Clone, Copy, Debug)]
 pub struct Six {
     /// Added to a number before its high bits are masked off, and subtracted after that: this
@@ -14,9 +14,9 @@ pub struct Six {
     pub least: [i32; 8],
     /// The difference between the largest and the least raw value.
     pub span: [u32; 8],
-    /// The factor of a physical value, in two parts: `raw * high + raw * low`.
+    /// The high part of the factor: a physical value is `raw * high + raw * low`.
     pub high: [f64; 8],
-    /// The second part.
+    /// The low part of the factor.
     pub low: [f64; 8],
 }
 
@@ -40,8 +40,8 @@ impl Six {
         None
     }
 
-    /// Append the raw values of rows; return the same as [`Self::append_physical`], and `None` also
-    /// if a bound is outside of the numbers of two bytes. Values within their bounds fit the type.
+    /// Append the raw values of rows. Return the same as [`Self::append_physical`], but `None` also
+    /// if two bytes cannot hold a bound. Raw values within such bounds fit the type.
     #[inline]
     pub fn append_raw(
         &self,
@@ -59,9 +59,9 @@ impl Six {
         None
     }
 
-    /// Return the bounds in 16 bits: a raw value that fits the type has the same bits as the number
-    /// on the wire. Distances from the least raw value are unique modulo 2^16 if both bounds are
-    /// raw values.
+    /// Return the bounds as 16-bit numbers; `None` if two bytes cannot hold them. 16 bits suffice:
+    /// a raw value has the same bits as on the wire, and distances from the least raw value are
+    /// unique modulo 2^16.
     #[cfg(target_arch = "x86_64")]
     fn narrow(&self) -> Option<Narrow> {
         let mut bounds = Narrow {

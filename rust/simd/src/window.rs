@@ -3,7 +3,7 @@
 
 /// The number of positions that are checked together.
 pub const WINDOW: usize = 32;
-/// The number of bytes that a check reads: also the header and LEN at the last position.
+/// The number of bytes that a check reads, including the header and LEN at the last position.
 pub const SEEN: usize = WINDOW + 2;
 
 /// The pattern to search for: two bytes, and a third one within bounds.

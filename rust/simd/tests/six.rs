@@ -18,7 +18,7 @@ fn six(bias: i32, bounds: (i32, i32), divide: [f64; 8]) -> Six {
     Six {
         bias: [bias; 8],
         least: [bounds.0; 8],
-        // The last two belong to no number: bytes after a row do not matter.
+        // The last two are for the bytes after a row, which must not matter.
         span: std::array::from_fn(|place| match place {
             0..6 => (bounds.1 - bounds.0).cast_unsigned(),
             _ => u32::MAX,

@@ -92,7 +92,7 @@ impl Edition {
             _ => "footer",
         };
         push(at..frame.len(), name, "the frame ends here".into(), None);
-        // Address, LEN and CMD have the order of the edition.
+        // The edition decides the order of address, LEN and CMD.
         parts.sort_by_key(|part| part.bytes.start);
         parts
     }

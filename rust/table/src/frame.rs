@@ -18,7 +18,7 @@ use serde_json::value::RawValue;
 use crate::json::{Record, Word};
 use crate::{BadEdition, Outcome, Within};
 
-/// The most data bytes: the longest LEN of two bytes that the core supports.
+/// The most data bytes: the largest LEN of two bytes that the core supports.
 pub(crate) const LONGEST: usize = 0x4000;
 
 /// A part of a frame.
@@ -89,8 +89,8 @@ pub(crate) fn frame_format(
         || !matches!(last, Some(Length | Command))
     {
         return BadEdition::because(
-            "layout must have length and command once each, and address if frames have one; the \
-             last part must be length or command, or command if replies have no command",
+            "layout must have length and command once each, and address if frames have one; it \
+             must end with length or command, and with command if replies have no command",
         );
     }
     if counted.iter().any(|part| times(&counted, *part) != 1)
@@ -98,8 +98,8 @@ pub(crate) fn frame_format(
         || !(reply_has_id || counted.contains(&Command))
     {
         return BadEdition::because(
-            "counted must have data, command if replies have no command, and each part at most \
-             once",
+            "counted must contain data, and command if replies have no command; no part may \
+             occur twice",
         );
     }
     let offset = |part: Place| {
@@ -175,7 +175,7 @@ const ALGORITHMS: [(&str, Algorithm, &[usize]); 6] = [
     ("fletcher-16", Algorithm::Fletcher(255), &[2]),
 ];
 
-/// Return how the check is computed, and its bytes; `None`: it is only a footer.
+/// Return the algorithm of the check, and its width in bytes; `None`: the check is only a footer.
 fn algorithm(record: Record<'_>, json: &[u8]) -> Outcome<(Option<Algorithm>, usize)> {
     let word: &str = record.get("check")?;
     if word == "footer" {
@@ -196,8 +196,8 @@ fn algorithm(record: Record<'_>, json: &[u8]) -> Outcome<(Option<Algorithm>, usi
     }
 }
 
-/// Return the text of the value of a key of an object: the numbers of a CRC can have more bits than a
-/// generic number of JSON.
+/// Return the JSON text under a key of an object. The parameters of a CRC can have more bits than
+/// `serde_json` numbers.
 fn part<'a>(object: &'a str, key: &str) -> Outcome<&'a str> {
     let object: Result<BTreeMap<String, &RawValue>, _> = serde_json::from_str(object);
     let object = object.or_else(BadEdition::because)?;
@@ -205,7 +205,7 @@ fn part<'a>(object: &'a str, key: &str) -> Outcome<&'a str> {
     found.map_or_else(|| BadEdition::because("it is missing").within(key, ""), Ok)
 }
 
-/// Return the number or flag of a key of an object.
+/// Return the number or flag under a key of an object.
 fn stated<T: FromStr<Err: Display>>(object: &str, key: &str) -> Outcome<T> {
     let value = part(object, key)?.parse();
     value.or_else(BadEdition::because).within(key, "")
@@ -226,7 +226,7 @@ fn crc(json: &[u8], size: usize) -> Outcome<Algorithm> {
     match Crc::new(crc).filter(|crc| crc.size() == size) {
         Some(made) if fits(crc.poly | crc.init | crc.xorout) => Ok(Algorithm::Crc(made)),
         _ => BadEdition::because(
-            "crc must have 1 to 120 bits, its numbers at most as many; check_width must be its size in bytes",
+            "crc must have 1 to 120 bits, its parameters at most as many; check_width must be its size in bytes",
         ),
     }
 }

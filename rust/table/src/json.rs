@@ -1,4 +1,4 @@
-//! Reads values of a file whose types are not known.
+//! Reads values of a JSON file and checks their types.
 
 use alloc::vec::Vec;
 use core::fmt::Display;
@@ -9,9 +9,9 @@ use serde_json::Value;
 
 use crate::{BadEdition, Outcome, Within};
 
-/// A value that a file states as a word.
+/// A type with a few values; a file names each of them by a word.
 pub(crate) trait Word: Copy + 'static {
-    /// Each word, and what it states.
+    /// Each word, and the value that it names.
     const WORDS: &'static [(&'static str, Self)];
 }
 
@@ -38,27 +38,27 @@ impl<'a> Record<'a> {
         read.or_else(BadEdition::because).within(key, "")
     }
 
-    /// Return the value of a key; the default if it is missing.
+    /// Return the value of a key; the default if the key is missing.
     pub(crate) fn or<T: Deserialize<'a>>(self, key: &str, usual: T) -> Outcome<T> {
         Ok(self.get::<Option<T>>(key)?.unwrap_or(usual))
     }
 
-    /// Return the value of a key; an empty one if it is missing.
+    /// Return the value of a key; an empty one if the key is missing.
     pub(crate) fn any<T: Deserialize<'a> + Default>(self, key: &str) -> Outcome<T> {
         self.or(key, T::default())
     }
 
-    /// Return the value that a word states.
+    /// Return the value that a word names.
     pub(crate) fn word<T: Word>(self, key: &str) -> Outcome<T> {
         self.at(key).as_word().within(key, "")
     }
 
-    /// Return the value that a word states; the default if it is missing.
+    /// Return the value that a word names; the default if the key is missing.
     pub(crate) fn word_or<T: Word>(self, key: &str, usual: T) -> Outcome<T> {
         self.some(key).map_or(Ok(usual), |_| self.word(key))
     }
 
-    /// Return the values that a list of words states; the default if it is missing.
+    /// Return the values that a list of words names; the default if the key is missing.
     pub(crate) fn words_or<T: Word>(self, key: &str, usual: &[T]) -> Outcome<Vec<T>> {
         let read = |list: Self| list.items()?.into_iter().map(Self::as_word).collect();
         let words = self.some(key).map(read);
@@ -91,7 +91,7 @@ impl<'a> Record<'a> {
         BadEdition::because(format_args!("{key} is {found}; allowed: {low}..{high}"))
     }
 
-    /// Return a number in a range; the default if it is missing.
+    /// Return a number in a range; the default if the key is missing.
     pub(crate) fn within_or<T>(self, key: &str, range: RangeInclusive<T>, usual: T) -> Outcome<T>
     where
         T: Deserialize<'a> + PartialOrd + Display,
@@ -114,8 +114,8 @@ impl<'a> Record<'a> {
         self.at(key).items().within(key, "")
     }
 
-    /// Return an exact number, such as `-552/5`: its numerator and its denominator, which is not 0.
-    /// It is 1 if it is missing.
+    /// Return a fraction, such as `-552/5`: its numerator and its denominator, which is not 0. A
+    /// missing key means 1.
     pub(crate) fn rational(self, key: &str) -> Outcome<(i64, i64)> {
         let Some(text) = self.at(key).0.as_str() else {
             return Ok((self.or(key, 1)?, 1));
@@ -127,7 +127,7 @@ impl<'a> Record<'a> {
         }
     }
 
-    /// Return the name of what the object describes.
+    /// Return the value of the key `name`.
     pub(crate) fn name(self) -> Outcome<&'a str> {
         self.get("name")
     }

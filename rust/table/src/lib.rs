@@ -63,7 +63,7 @@ pub struct Command {
     pub role: String,
     /// The query that reads back what it sets.
     pub read_by: Option<String>,
-    /// The states that it stores arguments in.
+    /// The states in which the device stores its arguments.
     pub stores: Vec<String>,
     /// The variants of its request, and of its reply.
     pub request: Vec<Vec<Field>>,
@@ -86,16 +86,16 @@ impl Command {
 #[allow(missing_docs)] // the names of the fields explain them
 pub struct Field {
     pub name: String,
-    /// The words of its choices, in their order; empty: they have none.
+    /// The labels of its choices, in the same order; empty: the choices have none.
     pub labels: Vec<String>,
     /// Ranges of raw values, each with a text for the values in it; `{number}` is the raw value.
     pub meanings: Vec<(i64, i64, String)>,
-    /// The numbers of each case. A list, bytes or a text has those of one element:
-    /// [`Field::number`] finds the number of any.
+    /// The numbers of each case. For a list, bytes or a text they are those of one element;
+    /// [`Field::number`] finds the number at any index.
     pub cases: Vec<Vec<Number>>,
     /// The smallest and the largest number of elements, if they differ.
     pub sizes: Option<(usize, usize)>,
-    /// The field whose elements it counts.
+    /// If it is a count: the name of the field with the counted elements.
     pub counts: Option<String>,
     /// Whether it is a constant; `default` is its value.
     pub constant: bool,
@@ -113,7 +113,7 @@ impl Field {
 }
 
 /// The properties of a number that error texts need: its name in a named tuple, its unit, and the
-/// words of its choices; each may be empty.
+/// labels of its choices. Each may be empty.
 #[derive(Clone, Debug, Default)]
 #[allow(missing_docs)] // the names of the fields explain them
 pub struct Number {
@@ -182,7 +182,7 @@ impl Edition {
 pub struct BadEdition(String);
 
 impl BadEdition {
-    /// Return the error of that sentence, as an outcome.
+    /// Return the error with this sentence, as an outcome.
     pub(crate) fn because<T>(sentence: impl ToString) -> Outcome<T> {
         Err(Self(short(&sentence.to_string())))
     }
@@ -199,7 +199,7 @@ impl core::error::Error for BadEdition {}
 /// A result, or why the file was rejected.
 pub(crate) type Outcome<T> = Result<T, BadEdition>;
 
-/// Adds to an error where the mistake is.
+/// Adds the position of the mistake to an error.
 pub(crate) trait Within {
     /// Prefix the error with the position of the mistake.
     fn within(self, what: &str, name: &str) -> Self;

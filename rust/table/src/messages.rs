@@ -23,7 +23,7 @@ impl Word for wire::Encoding {
     ];
 }
 
-/// One variant of a message, as the table, texts and clients, and the exchange need it.
+/// One variant of a message: for the table, for texts and clients, and for the exchange.
 type Variant = (wire::Variant, (Vec<Field>, Vec<Named>));
 
 /// Makes the variants of the messages of a file.
@@ -41,7 +41,7 @@ struct Varying<'a> {
     most: usize,
     /// The bytes of an element.
     each: usize,
-    /// The number of elements in the variant that is made.
+    /// The number of elements in the variant that is made next.
     count: usize,
 }
 
@@ -132,7 +132,9 @@ impl<'a> Messages<'a> {
         let list = |name: &str| lists.iter().find(|list| list.name == name);
         if let Some(counted) = record.get::<Option<&str>>("counts")? {
             let Some(list) = list(counted) else {
-                return BadEdition::because("counts must name a list of the message that varies");
+                return BadEdition::because(
+                    "counts must name a list of varying length in the same message",
+                );
             };
             let (mut field, mut text) = self.plain(record, records, Some(list.count as i64))?;
             field.varies = true;
@@ -235,11 +237,11 @@ impl<'a> Messages<'a> {
         (field.flag, field.many) = (kind == Kind::Flag, kind == Kind::Value);
         let selector: Option<&str> = record.get("selector")?;
         let index = |name| records.iter().position(|each| each.name() == Ok(name));
-        // The core rejects what is not a field.
+        // An unknown name becomes an index that the core rejects.
         field.selector = selector.map(|name| index(name).unwrap_or(records.len()));
         field.choices = match fixed {
             Some(fixed) => vec![fixed],
-            // Each case of a selected quantity has its own choices, in its number.
+            // Each case of a quantity with a selector has its own choices, stored in its number.
             None if field.selector.is_some() && kind == Kind::Quantity => Vec::new(),
             None => all_choices(first)?,
         };
@@ -267,8 +269,8 @@ fn labels(of: Record<'_>) -> Outcome<Vec<String>> {
     members.map(|member| member.get("name")).collect()
 }
 
-/// Set the next numbers of elements; the last list changes first. All lists together may take
-/// `room` bytes more than with their smallest sizes. Return false after the last variant.
+/// Set the next combination of list lengths; the last list changes first. All lists together may
+/// take `room` bytes more than at their smallest lengths. Return false after the last combination.
 fn lengthen(mut lists: &mut [Varying<'_>], room: usize) -> bool {
     let more = |list: &Varying<'_>| (list.count - list.least) * list.each;
     while let Some((last, earlier)) = lists.split_last_mut() {
@@ -289,11 +291,11 @@ fn bounds(of: Record<'_>) -> Outcome<(usize, usize)> {
     Ok((bound("least")?, bound("most")?))
 }
 
-/// Return raw values of a field's first case in physical units.
+/// Convert raw values of a field's first case to physical values.
 fn physical(raws: &[i64], field: &wire::Field) -> Outcome<Option<Value>> {
     let numbers = field.numbers(0);
     if numbers.len() != raws.len() {
-        return BadEdition::because("it is not a raw value for each number");
+        return BadEdition::because("it must have one raw value for each number");
     }
     let mut values = Vec::from_iter(field.many.then_some(wire::Value::Row(raws.len())));
     for (number, raw) in numbers.iter().zip(raws) {
@@ -303,7 +305,7 @@ fn physical(raws: &[i64], field: &wire::Field) -> Outcome<Option<Value>> {
     Ok(Value::nested(&mut values.into_iter()))
 }
 
-/// Return about how many bytes a field takes besides its numbers.
+/// Return about how many bytes of memory a field takes, without its numbers.
 fn memory(field: &wire::Field, text: &Field) -> usize {
     let whens = field.cases.iter().map(|case| 8 * case.when.len());
     let says = text.meanings.iter().map(|(.., says)| 48 + says.len());

@@ -217,7 +217,7 @@ impl Part<'_> {
         self.name.number(self.case, at)
     }
 
-    /// Return the name of a number: that of its field, its index in a list, and its own.
+    /// Return the full name of a number: its field's name, its index in a list, and its own name.
     pub(crate) fn element(&self, at: usize) -> String {
         let field = &self.name.name;
         let number = self.named(at).map_or("", |number| &number.name);
@@ -262,7 +262,7 @@ impl Part<'_> {
         text!(if all { "named-row" } else { "row" }; count, names)
     }
 
-    /// Return the words of a number's choices, and their raw values.
+    /// Return the labels of a number's choices, and their raw values.
     pub(crate) fn labels<'a>(
         &'a self,
         number: &'a WireNumber,
@@ -334,7 +334,7 @@ fn bound(number: &WireNumber, raw: i64) -> String {
     let scaled = i128::from(raw) * i128::from(number.multiply);
     let divide = i128::from(number.divide);
     match number.physical(raw) {
-        // The nearest float to a decimal has more digits than anyone wrote; -0.0 is written as 0.
+        // The exact value of a float has more digits than the file states; -0.0 is shown as 0.
         WireValue::Real(real) if number.is_float() => {
             general(real + 0.0, if number.width == 4 { 6 } else { 15 })
         }
@@ -356,7 +356,7 @@ fn digits(number: u16, wide: bool) -> String {
     format!("{number:0width$X}", width = if wide { 4 } else { 2 })
 }
 
-/// Return runs of consecutive numbers as their ends; short runs stay apart.
+/// Return numbers as text; a run of at least four consecutive ones is shown as a range.
 fn runs(numbers: &[u8]) -> String {
     let runs = numbers.chunk_by(|one, next| one.checked_add(1) == Some(*next));
     let shown = runs.map(|run| match run {

@@ -16,7 +16,7 @@ use crate::{Edition, Field, Value};
 
 // A link to a file of the Python package; a package of this crate contains the file.
 const TEMPLATES: &str = include_str!("../error_texts.json");
-/// A longer value is cut.
+/// An error shows at most this many characters of a value.
 const MOST: usize = 80;
 /// An error shows at most this many bytes of what was received meanwhile.
 const SHOWN: usize = 24;
@@ -58,7 +58,7 @@ macro_rules! text {
 }
 pub(crate) use text;
 
-/// Return the text of an error of a value of the caller.
+/// Return the error text for a caller's value that is not allowed.
 #[must_use]
 pub fn bad_argument(argument: &str, value: &Value, allowed: &str) -> String {
     let mut value = value.to_string();
@@ -123,7 +123,7 @@ impl Edition {
         command.map_or("", |command| &command.name)
     }
 
-    /// Return the text of the error that an edition has no such address.
+    /// Return the error text for an address that the edition does not have.
     #[must_use]
     pub fn no_address(&self, given: &Value) -> String {
         let addresses = self.protocol.table.frame().addresses.iter();
@@ -212,7 +212,7 @@ impl Edition {
         })
     }
 
-    /// Return the line of something that was received while a reply to a command was waited for.
+    /// Describe something that was received while the client waited for a reply to the command `of`.
     fn line(&self, received: &Received, of: usize) -> String {
         let (bytes, size) = (received.event.data(), received.size);
         let mut data = hex(bytes.get(..SHOWN).unwrap_or(bytes), " ");
@@ -236,7 +236,7 @@ impl Edition {
     }
 }
 
-/// Return the text of the error of a request without a reply.
+/// Return the error text for a request without a reply.
 fn timeout(
     request: &str,
     (waited, attempts): (u64, usize),
@@ -263,7 +263,7 @@ fn timeout(
     text!("meanwhile"; what, received)
 }
 
-/// Return the text of the error of a text that was received.
+/// Return the error text for a text reply that is malformed.
 fn received_text(form: &TextForm, error: TextError, data: &[u8]) -> String {
     let prefix = |index: usize| form.prefixes.get(index).map_or("", |prefix| prefix);
     let prefix = |index: usize| quoted(prefix(index), is_printable);
@@ -277,7 +277,7 @@ fn received_text(form: &TextForm, error: TextError, data: &[u8]) -> String {
     protocol_error(&detail, error.offset, data)
 }
 
-/// Return the text of the error of texts that cannot be sent.
+/// Return the error text for text arguments that cannot be sent.
 fn unsent_text(form: &TextForm, fault: TextFault, given: &[&str]) -> String {
     let text = |index: usize| Value::Text((*given.get(index).unwrap_or(&"")).into());
     if let TextFault::NotPrintable(index) = fault {

@@ -150,7 +150,7 @@ impl<'a> Types<'a> {
     }
 }
 
-/// Return about how many bytes labels take.
+/// Return about how many bytes of memory labels take.
 pub(crate) fn words(labels: &[String]) -> usize {
     labels.iter().map(|label| 24 + label.len()).sum()
 }
@@ -199,7 +199,7 @@ fn part_of_word(part: Record<'_>) -> Outcome<core_table::Number> {
     })
 }
 
-/// Return a number with the bytes of a wire, and the limits of a type unless it has choices.
+/// Return a number: its bytes are those of a wire; its limits come from its choices or its type.
 fn number(wire: Record<'_>, of: Record<'_>, all: &[i64]) -> Outcome<core_table::Number> {
     let (multiply, divide) = of.rational("scale")?;
     let mut number = core_table::Number {
@@ -222,7 +222,7 @@ fn number(wire: Record<'_>, of: Record<'_>, all: &[i64]) -> Outcome<core_table::
     Ok(number)
 }
 
-/// Check that the bytes of a number can hold raw values.
+/// Check that the bytes of a number can hold these raw values.
 pub(crate) fn fitting<'a>(
     number: &core_table::Number,
     raws: impl IntoIterator<Item = &'a i64>,

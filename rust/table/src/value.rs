@@ -8,7 +8,7 @@ use core::fmt::{self, Display, Formatter};
 
 use cobotwire_core::{Encoding, Given, Unread, Value as Flat, ValueFault};
 
-/// Below this number a real holds every integer.
+/// Below this number a double holds every integer exactly.
 const EXACT: f64 = (1_u64 << 53) as f64;
 
 /// The value of an argument or of a field of a reply.
@@ -41,7 +41,7 @@ impl Given for Value {
         match self {
             Self::Integer(raw) => Ok(*raw),
             Self::Flag(set) if flag => Ok(i64::from(*set)),
-            // An array of reals may have integers among them.
+            // An integer in an array of reals arrives as a real.
             Self::Real(real) if real.abs() < EXACT && (*real as i64) as f64 == *real => {
                 Ok(*real as i64)
             }
@@ -95,7 +95,7 @@ impl From<Vec<Self>> for Value {
 }
 
 impl Value {
-    /// Return the next value of a decoded message; a row takes those that follow it.
+    /// Return the next value of a decoded message; a row also takes its elements, which follow it.
     pub(crate) fn nested(rest: &mut impl Iterator<Item = Flat>) -> Option<Self> {
         Some(match rest.next()? {
             Flat::Integer(raw) => Self::Integer(raw),
@@ -114,7 +114,7 @@ impl Value {
         })
     }
 
-    /// Return its length: of a text, in bytes of an encoding.
+    /// Return the number of elements; for a text, the number of bytes in an encoding.
     pub(crate) fn length(&self, encoding: Option<Encoding>) -> usize {
         match self {
             Self::Bytes(bytes) => bytes.len(),
@@ -185,7 +185,7 @@ pub(crate) fn general(real: f64, digits: usize) -> String {
     }
 }
 
-/// Return an exponent with its sign and at least two digits.
+/// Return a number with an exponent that has a sign and at least two digits, as in Python.
 fn with_exponent(mantissa: &str, exponent: &str) -> String {
     let digits = exponent.trim_start_matches('-');
     let sign = if digits == exponent { '+' } else { '-' };

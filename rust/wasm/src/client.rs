@@ -1,4 +1,4 @@
-//! A client: its session, the calls that wait, and the queues of its events.
+//! A client: its session, its calls that have not ended, and the queues of its events.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -9,7 +9,7 @@ use cobotwire_core::exchange::{Answer, Safety};
 
 use crate::{described, number, whole, wrong};
 
-/// A call that waits.
+/// A call that has not ended.
 struct Caller {
     call: CallId,
     number: i64,
@@ -151,7 +151,7 @@ impl Client {
         Ok((handle, prepared))
     }
 
-    /// Submit a request; return its number, by which a step will report how it ended.
+    /// Submit a request. Return its number: a later step reports under it how the call ended.
     fn call(&mut self, given: &[Value], now: u64) -> Result<Value, Error> {
         let (mut handle, prepared) = self.prepare(given)?;
         let [Value::Text(command), .., sampled] = given else {
@@ -178,8 +178,8 @@ impl Client {
     }
 
     /// Return the calls that have ended: the number of each, whether it succeeded, and its answer
-    /// or error. `cut`: the transport was lost during a write, so it is unknown how many bytes it
-    /// took.
+    /// or error. `cut`: the transport was lost during a write, so it is unknown how many bytes were
+    /// written.
     fn ended_calls(&mut self, cut: bool) -> Vec<Value> {
         let mut ended = Vec::new();
         for caller in std::mem::take(&mut self.callers) {
@@ -203,7 +203,7 @@ impl Client {
         ended
     }
 
-    /// Return the fields of a reply, and when they were exchanged.
+    /// Return the fields of a reply, and the times of request and reply.
     fn answered(&self, caller: &Caller, answer: Option<Answer>) -> Value {
         let times = answer
             .as_ref()

@@ -81,9 +81,9 @@ fn encoded(
     Some(Value::Absent)
 }
 
-/// Return the fields of a frame, its explained bytes, and the commands that it can be with their
-/// directions (the command of the fields is first); or the reason, the offset and the text of an
-/// error.
+/// Return the fields of a frame, its explained bytes, and each command and direction that it can
+/// have; the first one belongs to the fields. If the frame is illegal, return the reason, the
+/// offset and the text of the error.
 fn decoded(handle: &Handle, listening: Listening, frame: &[u8], of: Option<usize>) -> Value {
     let (edition, table) = (&handle.edition, &handle.edition.protocol.table);
     let mut found: Vec<Decoded> = Vec::new();

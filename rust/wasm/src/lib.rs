@@ -1,7 +1,7 @@
 //! The session of the crate `cobotwire` for JavaScript, which owns transports and timers.
 //!
-//! JavaScript calls a function by a message: a serialized row of values, the name of the function
-//! and its arguments. The answer is also a row: whether the call succeeded, then the result or the
+//! JavaScript calls a function by a message, a serialized row of values: the function's name and
+//! its arguments. The answer is also a row: whether the call succeeded, then the result or the
 //! error (its kind, its text, and further values of that kind). `clients/typescript/src` is the
 //! other end; times are nanoseconds of its clock.
 
@@ -23,7 +23,7 @@ thread_local! {
     static MACHINE: RefCell<Machine> = RefCell::default();
 }
 
-/// Return where a message of that size can be written.
+/// Return the address at which JavaScript can write a message of this size.
 #[unsafe(no_mangle)]
 pub extern "C" fn room(size: usize) -> *mut u8 {
     MESSAGE.with_borrow_mut(|message| {
@@ -32,7 +32,7 @@ pub extern "C" fn room(size: usize) -> *mut u8 {
     })
 }
 
-/// Run the message of that size; return the address of its answer.
+/// Run the message of this size that JavaScript wrote; return the address of the answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn answer(size: usize) -> *const u8 {
     let given = MESSAGE.with_borrow(|message| message::read(&mut message.get(..size)?));

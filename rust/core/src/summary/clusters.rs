@@ -2,13 +2,13 @@
 
 /// Noise may continue after frames of at most this many bytes together.
 const REACH: u64 = 64;
-/// Noise that is longer than this is passed on before its end has come.
+/// Noise that is longer than this is handed over before its end is known.
 const LIMIT: u64 = 1 << 20;
 
 /// Consecutive bytes of noise: their start and their end.
 pub(super) type Span = (u64, u64);
 
-/// The noise that waits.
+/// The noise that waits, because later noise may belong to it.
 #[derive(Default)]
 pub(super) struct Clusters {
     spans: Vec<Span>,

@@ -29,7 +29,7 @@ pub struct Described<'a> {
     pub reason: Reason,
     /// Its bytes.
     pub data: &'a [u8],
-    /// The id of a damaged frame, if it came.
+    /// The id of a damaged frame, if it was received.
     pub id: Option<u16>,
 }
 

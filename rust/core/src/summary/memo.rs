@@ -1,9 +1,9 @@
-//! Remembers texts that Python writes.
+//! Caches texts that Python writes.
 
 use std::collections::HashMap;
 use std::hash::Hash;
 
-/// This many texts are remembered, so that hostile input does not fill the memory.
+/// At most this many texts are cached, so that hostile input does not fill the memory.
 const MOST: usize = 1 << 14;
 
 /// Texts by the values that they depend on.
@@ -16,7 +16,7 @@ impl<K> Default for Memo<K> {
 }
 
 impl<K: Eq + Hash> Memo<K> {
-    /// Return the text for a key; make it if it is not known.
+    /// Return the text for a key; make it if it is not cached.
     pub(super) fn text(&mut self, key: K, make: impl FnOnce() -> String) -> &str {
         if self.0.len() >= MOST && !self.0.contains_key(&key) {
             self.0.clear();

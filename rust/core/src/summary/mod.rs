@@ -66,7 +66,7 @@ pub struct Summary {
     counts: Counts,
     /// The bytes of the stream that are not reported yet.
     buffer: Vec<u8>,
-    /// Where they start.
+    /// The position of the buffer's first byte in the stream.
     base: u64,
     clusters: Clusters,
     report: Report,

@@ -11,7 +11,7 @@ pub(super) struct Report {
     rules: Rules,
     diagnosis: Diagnosis,
     writer: Option<Writer>,
-    /// The positions of frames; the first `written` have their lines.
+    /// The positions of frames; the lines of the first `written` ones are written.
     frames: Vec<u64>,
     written: usize,
     /// Lines for the sink, and the position in the stream at which they start.
@@ -23,7 +23,7 @@ pub(super) struct Report {
     scratch: Scratch,
 }
 
-/// Memory that is used again.
+/// Memory that is reused.
 #[derive(Default)]
 struct Scratch {
     findings: Vec<Finding>,

@@ -32,7 +32,7 @@ pub(super) fn natural(out: &mut Vec<u8>, mut rest: u64) {
 /// double.
 pub(super) fn real(out: &mut Vec<u8>, real: f64) {
     let thousandths = (real * FINE).round();
-    // Of the decimal numbers with up to 15 digits, only one is nearest to a double.
+    // At most one decimal number with up to 15 digits reads back as a given double.
     if thousandths.abs() < EXACT && thousandths / FINE == real && real != 0.0 {
         decimal(out, real < 0.0, thousandths.abs() as u64);
     } else {

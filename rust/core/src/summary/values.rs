@@ -3,7 +3,7 @@
 use super::repr;
 use crate::number::{Encoding, Value};
 
-/// Append a value; what it consists of is taken from `rest`.
+/// Append a value; its elements, if any, are taken from `rest`.
 pub(super) fn append(out: &mut Vec<u8>, value: Value, rest: &mut &[Value]) {
     match value {
         Value::Integer(raw) => repr::integer(out, raw),

@@ -45,8 +45,8 @@ pub fn frame_format() -> FrameFormat {
     }
 }
 
-/// Return a table whose command `n` has id `0x20 + n`, and one variant in each direction: these
-/// fields.
+/// Return a table with a command for each item: number `n` has id `0x20 + n`, and in each direction
+/// one variant with these fields.
 pub fn table(variants: Vec<Vec<Field>>) -> Table {
     table_of(frame_format(), variants)
 }

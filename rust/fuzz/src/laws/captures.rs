@@ -14,13 +14,14 @@ use crate::input::Cutting;
 use crate::plain_capture::{self, Capture, Packet};
 use crate::subjects::{self, LISTENING, Subject};
 
-/// After this long without a byte, a direction stops waiting.
+/// After this time without a byte, in nanoseconds, a direction stops waiting for the rest of a
+/// frame.
 const IDLE: i128 = 500_000_000;
 
 /// The results for one stream: positions with their times.
 #[derive(Debug, Default, PartialEq)]
 struct Found {
-    /// Frames, and whether they were rejected.
+    /// Position and time of each frame, including rejected ones.
     frames: Vec<(u64, i64)>,
     /// Position, size and time of each span of noise.
     noise: Vec<(u64, u64, i64)>,

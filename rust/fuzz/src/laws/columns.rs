@@ -36,7 +36,7 @@ pub fn columns_hold_what_frames_read_as(data: &[u8]) {
     read(&source, any, &input.stream, input.long, input.cutting);
 }
 
-/// Check columns for any table, and offsets by `any` of its rules.
+/// Check the columns of a stream, and the offsets that the rules in `any` give.
 pub fn read(
     source: &Source<'_>,
     any: (&Oracle, &Rules),
@@ -56,7 +56,7 @@ pub fn read(
     columns_hold(source, &stream, &chunks);
 }
 
-/// Return threads that cut a stream of that size.
+/// Return threads that cut a stream of that size into several pieces.
 fn workers(size: usize) -> Workers {
     Workers::new(3).cutting_every(size / PIECES)
 }

@@ -159,8 +159,8 @@ fn samples(values: &[Value]) -> Vec<Sample> {
     all
 }
 
-/// Return whether every message that decodes can be encoded: the closed lists lie within the
-/// bounds, which only the encoder checks as well, and no selector has a selector itself.
+/// Return whether every message that decodes can be encoded: the choices lie within the bounds
+/// (only the encoder also checks those), and no selector has a selector itself.
 fn makes_sense(variant: &Variant) -> bool {
     variant.fields().iter().all(|field| {
         let selector = field.selector.map(|index| &variant.fields()[index]);

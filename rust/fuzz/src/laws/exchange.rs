@@ -25,7 +25,7 @@ static DOCUMENTS: LazyLock<[Value; 2]> = LazyLock::new(|| {
     files.map(|file| serde_json::from_slice(file).expect("the generator writes JSON"))
 });
 
-/// Check a file with changes and an exchange that are driven by fuzz bytes.
+/// Damage a file as fuzz bytes say. If it is still accepted, drive its exchange by further bytes.
 pub fn file_is_refused_or_every_byte_is_in_one_event_and_every_wait_ends(data: &[u8]) {
     let mut bytes = Bytes(data);
     let edition = match Edition::read(&changed(&DOCUMENTS[bytes.pick(2)], &mut bytes)) {
@@ -117,7 +117,7 @@ impl Run {
         self.covered += sizes.sum::<usize>();
     }
 
-    /// Let time pass until nobody waits; check what was received.
+    /// Let time pass until no request waits; check that each received byte was in one event.
     fn end(mut self, received: usize) {
         let most = 200 + 10 * self.tickets.len();
         for _ in 0..most {

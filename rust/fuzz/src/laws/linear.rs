@@ -12,7 +12,7 @@ const SHORT: [usize; 2] = [8 << 10, 128 << 10];
 const TIMES: usize = 8;
 /// Quadratic work would take `TIMES` times as long.
 const MOST: u32 = 3;
-/// Other processes slow down some measurements, but not all, because they use the same caches.
+/// Other processes use the same caches and so slow down some measurements, but not all.
 const ATTEMPTS: usize = 12;
 
 /// Check that a byte takes at most three times as long in a stream of eight times the length; both

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use cobotwire_core::{Cells, Columns, Direction, Field, Number, Spans, Table, Variant, VariantId};
 
-/// The rows of each variant: where they start, their addresses, and its fields' numbers.
+/// The rows of each variant: their offsets, their addresses, and the numbers of each field.
 pub type Rows = BTreeMap<(bool, usize, usize), (Vec<u64>, Vec<u8>, Vec<Vec<i64>>)>;
 
 /// Return the variant with this id.

@@ -1,4 +1,4 @@
-//! Checks that any table, which is a caller's data, is either rejected or works.
+//! Checks that any table that a caller may pass is either rejected or works.
 
 use std::sync::Arc;
 
@@ -55,7 +55,7 @@ pub fn any_table_is_rejected_or_works(data: &[u8]) {
     }
 }
 
-/// Check that the stream and the frames that the oracle finds in it decode as they must.
+/// Check that the stream, and each frame that the oracle finds in it, decode as in the oracle.
 fn decodes(table: &Table, direction: Direction, stream: &[u8]) {
     let oracle = Oracle::new(table, Listening::To(direction), false);
     decoding::hold(table, &oracle, direction, stream);
