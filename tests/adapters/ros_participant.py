@@ -42,11 +42,11 @@ class Participant:
         self._participant = DomainParticipant(domain)
 
     def reader(self, topic: str, kind: str, depth: int = 10) -> DataReader[Any]:
-        """Return the reader that ROS 2 would have."""
+        """Return a reader like that of a node of ROS 2."""
         return DataReader(self._participant, *self._topic(topic, kind, depth))
 
     def writer(self, topic: str, kind: str) -> DataWriter[Any]:
-        """Return the writer that ROS 2 would have."""
+        """Return a writer like that of a node of ROS 2."""
         return DataWriter(self._participant, *self._topic(topic, kind, 10))
 
     def _topic(self, topic: str, kind: str, depth: int) -> tuple[Topic[Any], Qos]:
@@ -79,7 +79,7 @@ def type_of(defined: Any) -> Any:
 
 
 class Received:
-    """A message; cyclonedds adds an attribute to what it receives."""
+    """A received message, in an object on which cyclonedds can set an attribute."""
 
     def __init__(self, message: Any) -> None:
         self.message = message
@@ -95,7 +95,7 @@ def sample(kind: str, data: bytes) -> Any:
 async def received(
     reader: DataReader[Any], wanted: Callable[[Any], Any] = lambda each: each
 ) -> Any:
-    """Return the first result of ``wanted`` that is not empty, of the messages in turn."""
+    """Call ``wanted`` with each received message; return its first result that is not empty."""
     until = time.monotonic() + SECONDS
     seen = None
     while time.monotonic() < until:
@@ -105,5 +105,5 @@ async def received(
         seen = taken[0] if taken else seen
         await asyncio.sleep(0 if taken else 0.005)
     raise AssertionError(
-        f"the message did not come; the last one: {getattr(seen, 'message', seen)}"
+        f"the message did not arrive; the last one was: {getattr(seen, 'message', seen)}"
     )

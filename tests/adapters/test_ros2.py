@@ -93,7 +93,7 @@ class Published:
         await self.arm.close()
 
     async def report(self, part: str, text: str = "") -> Any:
-        """Return the next status of a part that contains a text."""
+        """Return the next status of a part with a message that contains ``text``."""
 
         def found(message: Any) -> Any:
             named = (each for each in message.status if each.name == f"cobotwire: {part}")
@@ -119,7 +119,7 @@ def trajectory(*points: tuple[Sequence[float], float], names: Sequence[str] = NA
 
 
 @in_loop
-async def test_joints_and_end_are_published_as_ros_has_them() -> None:
+async def test_joints_and_end_are_published_in_radians_and_metres() -> None:
     async with Published() as here:
         states = here.other.reader("rt/joint_states", "sensor_msgs/msg/JointState")
         state = await received(states)
@@ -135,7 +135,7 @@ async def test_joints_and_end_are_published_as_ros_has_them() -> None:
 
 
 @in_loop
-async def test_diagnostics_say_what_is_wrong_with_line_and_arm() -> None:
+async def test_diagnostics_report_the_state_of_transport_and_arm() -> None:
     async with Published() as here:
         line, arm = await here.report("line"), await here.report("arm")
         assert (line.level, line.message) == (0, "replies come in time")
@@ -224,7 +224,7 @@ def test_definitions_are_those_of_rosbags() -> None:
     for kind in (ros.JOINT_STATE, ros.TF_MESSAGE, ros.DIAGNOSTICS, ros.JOINT_TRAJECTORY):
         ours = ros.schema_text(kind).split(f"{'=' * 80}\n")
         theirs = STORE.generate_msgdef(kind, ros_version=2)[0].split(f"{'=' * 80}\n")
-        # Without the constants.
+        # Our definitions omit the constants.
         theirs = ["".join(n for n in part.splitlines(True) if "=" not in n) for part in theirs]
         assert sorted(ours) == sorted(theirs)
 
@@ -233,7 +233,7 @@ texts = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"
 
 
 @given(texts, st.lists(texts), st.lists(st.floats(allow_nan=False)), st.integers(0, 255))
-def test_bytes_are_those_of_cyclone_and_of_rosbags(
+def test_messages_are_encoded_as_by_cyclone_and_rosbags(
     text: str, names: list[str], values: list[float], level: int
 ) -> None:
     arrays = dict.fromkeys(("position", "velocity", "effort"), values)

@@ -53,7 +53,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--profile", action="append", choices=list(PROFILES))
     parser.add_argument("--client", choices=list(KNOWN), default="python")
     parser.add_argument("--seed", type=int, default=1, help="seed of the first run (default: 1)")
-    parser.add_argument("--seconds", type=float, default=180.0, help="no run starts later")
+    parser.add_argument("--seconds", type=float, default=180.0, help="start no run after this time")
     parser.add_argument("--processes", type=int, default=4)
     parser.add_argument("--markdown", type=Path, help="write the table into this page")
     return parser.parse_args()

@@ -105,7 +105,7 @@ SHORT = ("stop", "set_color", "jog_increment")
 def reply_values(command: Command, number: int, arguments: dict[str, Any]) -> dict[str, Any]:
     """Return the fields of reply number ``number``.
 
-    Where the edition allows both, every second reply repeats the request's arguments.
+    If the edition has replies with and without the request's arguments, the two kinds alternate.
     """
     kind = next(kind for kind in QUERIES if kind.name == command.name)
     assert kind.reply is not None, "queries have replies"

@@ -20,12 +20,12 @@ COPY = "copy"
 TOO_LATE = "too late"
 # A byte may be delivered this long before the client's clock says that the request was handed over.
 SLACK = 0.02
-# While no client is connected, bytes wait for the next one.
+# While no client is connected, bytes wait for the next client, for at most this time.
 KEPT_SECONDS = 3.0
 
 
 class Evidence:
-    """Finds the replies that a call can have taken, and the documented limit that explains it."""
+    """Finds the replies that a call can have taken, and the limit that explains a wrong result."""
 
     def __init__(
         self,

@@ -41,7 +41,7 @@ class HostileLine:
 
     Attributes:
         frames: the legal requests that arrived before any fault, with their times.
-        stalled: whether nothing is read.
+        stalled: whether the line reads nothing.
         stalls: when the thread of the line was not scheduled, and for how many seconds.
         delivered: which of the sent bytes were given to the transport, and when.
     """

@@ -15,15 +15,15 @@ class Plan:
     """One run: everything that its seed decides.
 
     Attributes:
-        profile: what happens.
+        profile: what the line and the users do.
         seed: repeats the draws of the run, not its timing.
-        tcp: whether the line is TCP or a pty.
+        tcp: whether the line is TCP; otherwise it is a pty.
         client: the blocking or asyncio client of Python, either client of Rust, or Node's.
         codec: the codec of the Python client, native or reference.
         edition: the edition's package.
         users: how many threads or tasks share the client.
-        timeout: seconds that each request has.
-        attempts: how often a query is sent.
+        timeout: the timeout of each request, in seconds.
+        attempts: how often a query is sent at most.
         grace: seconds for which late replies are expected; the delays of the line fit into it.
         seconds: how long users call.
         calls: after how many calls the run ends early.

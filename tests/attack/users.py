@@ -165,7 +165,7 @@ def run_threads(
 
 def _signal_main() -> None:
     main = threading.main_thread().ident
-    assert main is not None, "it runs"
+    assert main is not None, "the main thread runs"
     signal.pthread_kill(main, signal.SIGINT)
 
 

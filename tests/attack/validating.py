@@ -133,7 +133,7 @@ class Validator:
         self._fail(call, f"late by {excess:.3f} s; the machine stalled for {stalled:.3f} s")
 
     def _due(self, call: Call) -> float:
-        """Return when a call must have ended; counted from its write if its time is certain."""
+        """Return when a call must have ended: counted from its write, if that time is certain."""
         handed = self._evidence.handed_at(call)
         alike = self._of_request[call.request]
         uncontended = sum(c.began <= call.ended and call.began <= c.ended for c in alike) == 1

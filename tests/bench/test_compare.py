@@ -18,7 +18,7 @@ from compare import Compared
         ([1.05, 1.06, 0.7, 1.07, 1.04], "faster"),  # one disturbed round
     ],
 )
-def test_row_differs_only_if_the_middle_half_of_its_ratios_is_away_from_one(
+def test_row_differs_only_if_the_middle_half_of_its_ratios_excludes_one(
     theirs: list[float], verdict: str
 ) -> None:
     assert Compared("row", [1.0] * 5, theirs).verdict == verdict

@@ -41,7 +41,7 @@ const port = {
       port.opened = false;
       [received, written].map(lost);
     });
-    // Like a real port, it is open until it has closed.
+    // Like a real port, it counts as open until closing is complete.
     port.close = async () => {
       if (port.readable.locked || port.writable.locked) return;
       socket.close();
@@ -65,7 +65,7 @@ class LiveSite:
     """The page at ``url``, and the arm that is plugged in.
 
     Attributes:
-        table: what the next arm speaks.
+        table: the edition of the next arm.
         instead: the texts of files that replace those of the folder, by name.
         sent: the bytes that the page has written to its port.
         stopped_at: when the last stop was written, by the monotonic clock.

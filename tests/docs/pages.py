@@ -30,7 +30,7 @@ SECONDS = 900
 PORT = "/dev/ttyACM0"
 # `cobotwire doctor` reports this on a busy machine, whatever the page is about.
 SLOW = re.compile(r"^- slow: a round trip takes [\d.]+ ms\n    .*\n", re.MULTILINE)
-# The arm arrives within a tenth of a degree; the last reading depends on its time.
+# The arm arrives within a tenth of a degree; the exact reading depends on when it is taken.
 ARRIVED = re.compile(r"(?<==)-?0\.0\d?(?=\s)")
 
 

@@ -99,7 +99,8 @@ impl Open {
         events.iter().map(|event| self.event(event)).collect()
     }
 
-    /// Return the observable state of the exchange, and take the outcomes of requests that have ended.
+    /// Return the observable state of the exchange, and take the outcomes of requests that have
+    /// ended.
     fn look(&mut self, now: Nanos) -> Json {
         let exchange = &mut self.exchange;
         let tickets = self.requests.iter().enumerate();

@@ -36,7 +36,8 @@ impl AlarmClock {
         self.0.as_raw_fd()
     }
 
-    /// Make the descriptor readable from the time `due` on, in seconds of `time.monotonic`; None: never.
+    /// Make the descriptor readable from the time `due` on, in seconds of `time.monotonic`; None:
+    /// never.
     #[pyo3(signature = (due, /))]
     fn set(&self, due: Option<f64>) -> PyResult<()> {
         let wakes_at = due.map_or(NEVER, |due| {

@@ -124,7 +124,8 @@ impl NativeCaptureReader {
         PyTuple::new(py, all?)
     }
 
-    /// The name of the program that wrote the file, the bytes read, and whether the file is complete.
+    /// The name of the program that wrote the file, the bytes read, and whether the file is
+    /// complete.
     #[getter]
     fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let state = self.state.get(py)?;

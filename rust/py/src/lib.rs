@@ -31,7 +31,8 @@ mod summary;
 mod values;
 mod words;
 
-// This module is not tested without the interpreter's lock, so a free-threaded interpreter enables its lock when it loads this module.
+// This module is not tested without the interpreter's lock, so a free-threaded interpreter enables
+// its lock when it loads this module.
 #[pymodule(gil_used = true)]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     // First, so that no class is made in a subinterpreter.

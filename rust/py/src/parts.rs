@@ -38,7 +38,8 @@ fn noise_of<'py>(out: &Bound<'py, PyAny>) -> PyResult<[Bound<'py, Memory>; 2]> {
 /// Take the memory of an earlier `Columns`, which is empty afterwards.
 pub fn old_columns(edition: &Edition, out: &Bound<'_, PyAny>) -> PyResult<Columns> {
     let rows: Vec<Bound<'_, PyAny>> = out.getattr("_rows")?.extract()?;
-    // Attributes are read before memory is taken: this runs Python code, which may raise an error or let another thread run.
+    // Attributes are read before memory is taken: this runs Python code, which may raise an error
+    // or let another thread run.
     let variants = rows.iter().map(|rows| variant(edition, rows));
     let variants = variants.collect::<PyResult<Vec<_>>>()?;
     let memories = rows

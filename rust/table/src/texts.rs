@@ -212,7 +212,8 @@ impl Edition {
         })
     }
 
-    /// Describe something that was received while the client waited for a reply to the command `of`.
+    /// Describe something that was received while the client waited for a reply to the command
+    /// `of`.
     fn line(&self, received: &Received, of: usize) -> String {
         let (bytes, size) = (received.event.data(), received.size);
         let mut data = hex(bytes.get(..SHOWN).unwrap_or(bytes), " ");

@@ -67,7 +67,7 @@ def test_episode_that_a_hand_led_is_recorded_and_replayed(tmp_path: Path) -> Non
         last, seen = rows["action"][-1], rows["observation.state"][-1]
         assert len(rows["action"]) == pytest.approx(FPS * SECONDS, abs=FPS / 2)
         assert last[1:] == pytest.approx([v * last[0] / 80 for v in HAND[0][1][1:]], abs=0.5)
-        # The follower is a little behind the hand, and obeys its limit.
+        # The follower lags a little behind the hand, and joint 1 stops at its limit.
         assert seen == pytest.approx([5.0, *last[1:]], abs=3.0)
         with MyCobot280(one.url) as arm:
             arm.go_home(speed=100)

@@ -1,4 +1,4 @@
-"""Test robot and teleoperator over a stand-in for LeRobot; `make lerobot` runs the real one."""
+"""Test robot and teleoperator with a stand-in for LeRobot; `make lerobot` runs the real one."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def test_classes_have_what_lerobot_requires() -> None:
 
 
 @pytest.mark.parametrize("edition", editions.names())
-def test_arm_with_motors_has_a_robot_and_each_arm_a_teleoperator(edition: str) -> None:
+def test_each_edition_has_a_teleoperator_and_if_it_has_motors_a_robot(edition: str) -> None:
     table = editions.load(edition).TABLE
     place: dict[str, Any] = {"edition": edition, "port": "nowhere"}
     if table.addresses:

@@ -1,4 +1,4 @@
-"""A stand-in for LeRobot's cameras: it has none."""
+"""A stand-in for LeRobot's module of cameras; no robot gets a camera."""
 
 from typing import Any
 
