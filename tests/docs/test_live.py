@@ -363,7 +363,9 @@ def test_page_fits_and_axe_finds_nothing_serious(
         assert [violation(each) for each in serious] == []
 
 
-def test_wrong_edition_is_named_and_an_open_one_must_be_chosen(site: LiveSite, page: Page) -> None:
+def test_wrong_edition_is_named_and_among_possible_ones_the_user_must_choose(
+    site: LiveSite, page: Page
+) -> None:
     page.choose("edition", "mycobot")
     page.click("#connect")
     page.until(f"{SAID}.startsWith('the arm speaks mycobot280, not mycobot: ')")
@@ -395,7 +397,7 @@ def test_arm_with_another_baud_rate_is_found(site: LiveSite, page: Page) -> None
 
 
 @pytest.mark.parametrize("edition", editions.names())
-def test_tree_leads_to_the_editions_that_identify_finds(
+def test_decision_tree_leads_to_the_editions_that_identify_finds(
     identification: list[dict[str, Any]], edition: str
 ) -> None:
     table = editions.load(edition).TABLE

@@ -15,7 +15,7 @@ from vectors import ROOT
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 
 
-def _verbs(command: click.Command, name: str) -> Iterator[tuple[str, set[str]]]:
+def _options_of(command: click.Command, name: str) -> Iterator[tuple[str, set[str]]]:
     given = [
         word for each in command.params if isinstance(each, click.Option) for word in each.opts
     ]
@@ -23,25 +23,27 @@ def _verbs(command: click.Command, name: str) -> Iterator[tuple[str, set[str]]]:
     if isinstance(command, click.Group):
         context = click.Context(command)
         for word in command.list_commands(context):
-            verb = command.get_command(context, word)
-            assert verb is not None
-            yield from _verbs(verb, f"{name} {word}")
+            subcommand = command.get_command(context, word)
+            assert subcommand is not None
+            yield from _options_of(subcommand, f"{name} {word}")
 
 
-OPTIONS = dict(_verbs(app, "cobotwire"))
+OPTIONS = dict(_options_of(app, "cobotwire"))
 
 
 def unknown_options(text: str) -> list[str]:
-    """Return the options in calls of cobotwire that the verb or the program does not have."""
+    """Return the options in calls of cobotwire that neither subcommand nor program has."""
     found = []
     for call in re.finditer(r"(?<!=)\bcobotwire ([^`|#\n]+)", text):
         words = call[1].split(" -- ")[0].split()
-        verb = "cobotwire"
+        subcommand = "cobotwire"
         for word in words:
-            verb = f"{verb} {word}" if f"{verb} {word}" in OPTIONS else verb
-        known = {option for name in OPTIONS if verb.startswith(name) for option in OPTIONS[name]}
+            subcommand = f"{subcommand} {word}" if f"{subcommand} {word}" in OPTIONS else subcommand
+        known = {
+            option for name in OPTIONS if subcommand.startswith(name) for option in OPTIONS[name]
+        }
         options = [match[0] for word in words if (match := re.match(r"--[a-z][a-z-]*", word))]
-        found += [f"{verb} {option}" for option in options if option not in known]
+        found += [f"{subcommand} {option}" for option in options if option not in known]
     return found
 
 

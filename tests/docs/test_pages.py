@@ -9,7 +9,7 @@ import pytest
 from newcomer.run_pages import pages
 from vectors import ROOT
 
-# These say it in their first sentences.
+# These name their readers in their first sentences.
 ENTRANCES = ("README.md", "docs/index.md")
 PAGES = [page for page in pages() if page not in ENTRANCES]
 TEXTS = [*pages(), "ARCHITECTURE.md", "CONTRIBUTING.md", "codegen/README.md", "spec/README.md"]

@@ -61,7 +61,7 @@ def found(tab: Tab, site: Path, question: str) -> list[str]:
 
 
 @pytest.mark.parametrize("question", QUESTIONS)
-def test_first_result_of_a_users_question(tab: Tab, site: Path, question: str) -> None:
+def test_first_result_answers_the_users_question(tab: Tab, site: Path, question: str) -> None:
     first, *others = found(tab, site, question)
     assert first == QUESTIONS[question]
     # Catalogues of test cases contain the words of every command.

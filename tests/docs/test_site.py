@@ -83,7 +83,7 @@ def test_former_address_of_a_page_leads_to_its_new_one(pages: dict[Path, Page], 
 
 def _dead(site: Path, pages: dict[Path, Page], path: Path, page: Page) -> Iterator[str]:
     for link in page.links:
-        # Pages that are also read in the repository lead to generated ones by their address.
+        # Pages that are also read on GitHub link to generated pages by their URL on the site.
         parts = urlsplit(link.replace(SITE, f"{site}/"))
         if parts.scheme:
             found = REPOSITORY.match(link)

@@ -1,1 +1,1 @@
-"""The behaviour of real lines as data, for the tests and ``bench/bad_lines.py``."""
+"""The behaviour of real serial lines as data, for the tests and ``bench/bad_lines.py``."""

@@ -56,18 +56,18 @@ def encoder_reply(joint: int) -> bytes:
 
 @dataclass(frozen=True)
 class Case:
-    """A line that behaves as the notes describe, and the calls that clients make on it.
+    """A serial line that behaves as the notes describe, and the calls that clients make on it.
 
     Attributes:
         name: the name in the table.
-        notes: which lines of the notes the case covers, see ``notes.py``.
+        notes: which pieces of the notes the case covers, see ``notes.py``.
         line: the behaviour of the line, as the table describes it.
         faults: what goes wrong between the client and the arm.
         calls: the calls, in order.
         verdicts: how each call ends for our clients: ``right``, or the name of the error.
         requests: how many frames our clients send; None where that depends on chance.
         within: how many seconds our clients may take for all calls.
-        transports: on which kinds of line the case runs.
+        transports: on which transports the case runs.
         repeat: how many times the calls are made.
         threads: whether each call is made in a separate thread.
         clients: how many clients share the line.

@@ -1,6 +1,6 @@
 """The field notes, quoted in pieces. Each piece has a case, a test elsewhere, or needs no test.
 
-The notes are outside the repository. The pieces cover all of their lines, which a test checks.
+The notes are outside the repository. A test checks that the pieces cover all of the notes.
 """
 
 from __future__ import annotations

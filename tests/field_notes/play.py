@@ -33,7 +33,7 @@ class Outcome(NamedTuple):
 
 
 def _opened(library: str) -> Callable[[str], Any]:
-    """Return a function that imports a class of the maker's names and opens it."""
+    """Return a function that imports a library with the maker's classes, and opens an arm."""
 
     def opened(url: str) -> Any:
         module = import_module(library)

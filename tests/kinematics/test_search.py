@@ -1,4 +1,4 @@
-"""Test inverse kinematics without a closed form, over several arms and random geometries."""
+"""Test inverse kinematics without a closed form, for several arms and random geometries."""
 
 from __future__ import annotations
 

@@ -234,7 +234,7 @@ def test_arm_that_no_urdf_can_state_is_refused_with_its_reason() -> None:
         write_urdf(TABLE, "1 <")
 
 
-def test_verb_writes_a_file_or_standard_output(tmp_path: Path) -> None:
+def test_subcommand_writes_the_urdf_to_a_file_or_standard_output(tmp_path: Path) -> None:
     path = tmp_path / "arm.urdf"
     printed = cobotwire("urdf", "mycobot320")
     written = cobotwire("urdf", "mycobot320", "-o", path)

@@ -1,4 +1,4 @@
-"""Use protocols of other devices from the wheels alone, without Rust, also without its codec."""
+"""Use protocols of other devices from the wheels, without Rust, with each of the two codecs."""
 
 from __future__ import annotations
 

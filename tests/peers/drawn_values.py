@@ -19,7 +19,7 @@ from pymycobot_classes import RobotLimit
 from robots.comparison import calls_of
 from robots.robot import Call, Robot
 
-# The ends of bytes and words, and steps that the maker's classes truncate.
+# The limits of bytes and words; then values between two steps, which the maker's classes truncate.
 EDGES: tuple[int, ...] = (-32769, -32768, -129, -128, -1, 0, 1, 127, 128, 254, 255, 256)
 EDGES += (4095, 4096, 4097, 32767, 32768, 65535, 65536)
 OFF_STEP = (0.29, 12.37, -0.5)
@@ -44,7 +44,7 @@ class Drawn(NamedTuple):
 
 
 def drawn(robot: Robot, peer: Any, methods: list[str]) -> Iterator[Drawn]:
-    """Draw each argument of some methods, in calls that the table has or a ruling states."""
+    """Draw each argument of some methods, in calls from the edition's table or the robot's own."""
     by_method: dict[str, list[Call]] = {}
     for call in calls_of(robot):
         by_method.setdefault(call.method, []).append(call)
@@ -135,7 +135,7 @@ def _checks(kind: type, method: str, name: str) -> list[str]:
 
 @cache
 def _checked() -> dict[str, set[float]]:
-    """Return the numbers that the library's checks of a parameter contain, by its name there."""
+    """Return the numbers in the library's checks of parameters, by the names that it checks."""
     from pymycobot import error
 
     found: dict[str, set[float]] = {}

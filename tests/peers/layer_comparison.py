@@ -25,7 +25,7 @@ from robots.robot import Call, Robot
 REJECTED = "rejected"
 # The result of a method that returns the arm, so that calls can be chained.
 ITSELF = "the arm itself"
-# The result of a call that waits for bytes that never come.
+# The result of a call that waits for bytes that never arrive.
 ENDLESS = "waits for ever"
 # Our call raised an error after it wrote; the library's call fails by a mistake in the library.
 FAILED, MISTAKE = "fails", "fails by mistake"
@@ -36,7 +36,7 @@ MOST_SECONDS, MOST_FOR_REPLY = 10.0, 0.5
 
 
 class Recorded(MemoryTransport):
-    """A line to a simulated arm that keeps what is written."""
+    """A transport to a simulated arm that records what is written."""
 
     written = b""
 
@@ -188,7 +188,7 @@ def conversation(robot: Robot, theirs: Called, mine: Called) -> str:
 
 
 def _frames(robot: Robot, theirs: bytes, ours: bytes) -> str:
-    """Return how the frames differ in more than what the library truncates."""
+    """Return how the frames differ, apart from numbers that the library truncates."""
     pairs = [_cut(robot, theirs), _cut(robot, ours)]
     ids = [_ids(robot, frames) for frames in pairs]
     if ids[0] != ids[1]:
@@ -232,7 +232,7 @@ def sample(robot: Robot, which: int | str) -> Iterator[Call]:
 
 
 def chosen(robot: Robot, methods: list[str], which: int | str) -> list[str]:
-    """Return one method by its name, or every n-th method; each class starts elsewhere."""
+    """Return one method by its name, or every n-th one; the first depends on the class."""
     if isinstance(which, str):
         return [which]
     return methods[len(robot.peer) % which :: which]

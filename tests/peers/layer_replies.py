@@ -1,7 +1,7 @@
 """Compare what the maker's class and ours return for the same reply: type, shape and value.
 
-The replies are legal replies of the edition, values that the library documents, legal replies that
-follow the request's first argument, and data of every size that the library's parser distinguishes.
+The replies are legal replies of the edition, values that the library documents, legal replies with
+the request's first argument before them, and data of each size that the library's parser handles.
 """
 
 from __future__ import annotations

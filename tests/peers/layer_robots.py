@@ -19,8 +19,8 @@ def _another(peer: str, of: str, **changes: Any) -> Robot:
     return replace(given, peer=peer, further=(), calls=calls, **changes)
 
 
-# Classes of a robot that another class of the library drives, too. The older ones are compared on
-# the editions that the layer has for them.
+# Further classes of the library for robots that already have a class. The older ones are compared
+# on the editions that the layer has for them.
 SAME_ROBOT: dict[str, Robot] = {
     "MechArm": _another("MechArm", "MechArm270"),
     "MyBuddySocket": _another("MyBuddySocket", "MyBuddy", opened=on_socket),

@@ -56,7 +56,7 @@ def compare_values(robot: Robot, which: int | str = 1) -> Compared:
 
 
 def _layer(robot: Robot) -> Any:
-    """Return our class on a transport that raises its first write."""
+    """Return our class on a transport that raises an exception at its first write."""
     made = object.__new__(class_of(robot))
     made._raises, made._is_open, made._waits = True, True, True
     made.arm = load(robot.edition).CLIENT(RecordingTransport())

@@ -36,7 +36,7 @@ REJECTED, FAILED, MISTAKE, ABSENT = "rejected", "failed", "fails by mistake", "n
 
 
 class Done(NamedTuple):
-    """The bytes that a line wrote, the value that it kept, and its types."""
+    """The bytes that a line of a program wrote, the value that it kept, and the value's types."""
 
     written: bytes
     kept: Any

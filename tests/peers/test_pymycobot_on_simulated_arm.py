@@ -1,6 +1,6 @@
 """The maker's unmodified classes drive simulated arms that acknowledge setters, or do not.
 
-An arm of the document's edition acknowledges no setter. The classes wait for a reply all the same.
+An arm of the edition mycobot acknowledges no setter. The classes wait for a reply all the same.
 So they send each setter three times, take 1.5 s and return -1, although the arm obeys.
 """
 

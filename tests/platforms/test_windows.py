@@ -13,7 +13,7 @@ from cobotwire.simulator import PtyServer, SimulatedArm
 from newcomer.installing import run
 
 pytestmark = pytest.mark.skipif(
-    sys.platform != "linux", reason="removes what Linux has, and looks at /proc"
+    sys.platform != "linux", reason="removes features of Linux, and reads /proc"
 )
 
 TESTS = Path(__file__).parents[1]

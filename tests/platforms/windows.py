@@ -40,7 +40,7 @@ ABSENT_MODULES = (
     *("termios", "tty"),
 )
 ABSENT_NAMES: dict[Any, tuple[str, ...]] = {
-    # set_blocking came to Windows with Python 3.12. pyserial uses O_NOCTTY and O_NONBLOCK here.
+    # Windows has set_blocking since Python 3.12. O_NOCTTY and O_NONBLOCK stay: pyserial needs them.
     os: (
         *("EFD_CLOEXEC", "EFD_NONBLOCK", "O_CLOEXEC", "O_DIRECTORY"),
         *("chown", "eventfd", "fchmod", "fork", "forkpty", "get_blocking", "getgid", "getpgid"),

@@ -14,7 +14,7 @@ from targets.decoder.browser import Tab
 SECONDS = 30
 KEYS = {"Tab": 9, "Enter": 13, "Escape": 27, " ": 32, "End": 35, "Home": 36, "ArrowUp": 38}
 KEYS |= {"ArrowDown": 40, "ArrowLeft": 37, "ArrowRight": 39}
-# Wait in the page itself, since each question from here costs a round trip.
+# Wait in the page itself, since each evaluation from here costs a round trip.
 UNTIL = """
 async (look) => {
   const end = Date.now() + %d;

@@ -49,7 +49,7 @@ class Feed:
             self.take()
 
     def wish(self, wish: str, **values: Any) -> None:
-        """Send a wish."""
+        """Send what the page wants, such as ``stop``."""
         self.connection.send(json.dumps({"wish": wish, **values}))
 
 

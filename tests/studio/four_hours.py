@@ -40,7 +40,7 @@ from cobotwire.studio.stage import Stage
 from studio.driven_page import Page, browser
 
 HERTZ = 50
-# Each time the server takes traffic, it finds this many seconds of it.
+# Each time the server takes traffic, it gets this many seconds of it.
 SECONDS_A_TIME = 2.5
 NOISE_EVERY = 100
 NOISE = b"ets Jun  8 2016 00:22:57\r\n"
@@ -52,7 +52,7 @@ GROWTH, BATCHES_MB = 1.15, 10.0
 
 
 class FastLine(ArmLine):
-    """A line that is polled at 50 Hz, but on a clock that is fast; frames come from the codec."""
+    """Traffic of an arm that is polled at 50 Hz, on a fast clock; the codec makes the frames."""
 
     seconds = 0.0
 
@@ -84,7 +84,7 @@ class FastLine(ArmLine):
 
 @contextmanager
 def serving() -> Iterator[tuple[FastLine, LiveSession, Access]]:
-    """Serve a fast line."""
+    """Serve a studio with such traffic."""
     edition = editions.load("mycobot280")
     arm = SimulatedArm(mycobot280.TABLE)
     with TcpServer(arm.connect) as simulated, socket.create_server(("127.0.0.1", 0)) as listening:
@@ -115,7 +115,7 @@ def serving() -> Iterator[tuple[FastLine, LiveSession, Access]]:
 
 @contextmanager
 def stalled(access: Access) -> Iterator[None]:
-    """Open a feed that never reads."""
+    """Open a feed, and never read from it."""
     with socket.create_connection(("127.0.0.1", access.port)) as raw:
         raw.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         lines = (
@@ -145,7 +145,7 @@ def heap(page: Page) -> float:
 
 
 def main() -> None:
-    """Measure."""
+    """Measure the memory of server and page; exit with 1 if it grows."""
     hours = float(sys.argv[1]) if len(sys.argv) > 1 else 4.0
     grown = False
     with serving() as (line, session, access), browser() as page, stalled(access):

@@ -20,7 +20,7 @@ WAYS = {
     "a request, then half a header": b"GET /icon.svg HTTP/1.1\r\nHost: 127.0.0.1:PORT\r\n\r\nGET /",
     "half a WebSocket": b"GET /api/feed HTTP/1.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n",
 }
-# The limits for a stop: of a page that is open, and of a new one.
+# How long Stop may take: on a page that is open, and over a new connection.
 OPEN_SECONDS, NEW_SECONDS = 2.0, 5.0
 
 

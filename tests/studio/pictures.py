@@ -15,7 +15,7 @@ SETTLED = "new Promise((go) => setTimeout(go, 700))"
 
 
 def live(page: Page, folder: Path) -> None:
-    """The arm on its way to a target, on a wide screen; then on a phone, in the dark."""
+    """Take pictures of an arm on its way to a target: on a wide screen, then on a dark phone."""
     with running("--rate", "20") as studio:
         page.show(1440, 900)
         page.open(studio.url)
@@ -34,7 +34,7 @@ def live(page: Page, folder: Path) -> None:
 
 
 def faults(page: Page, folder: Path) -> None:
-    """A fault scenario, and what the noise is, in the dark."""
+    """Take a picture of a fault scenario and of explained noise, in dark mode."""
     with running() as studio:
         page.show(1440, 900, dark=True)
         page.open(studio.url)
@@ -53,7 +53,7 @@ def faults(page: Page, folder: Path) -> None:
 
 
 def recording(page: Page, folder: Path) -> None:
-    """A recording in the middle of a motion."""
+    """Take a picture of a recording in the middle of a motion."""
     with tempfile.TemporaryDirectory() as place:
         path = record(Path(place) / "arm.pcapng", 8.0)
         with running(str(path)) as studio:

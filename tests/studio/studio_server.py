@@ -42,7 +42,7 @@ class Studio(NamedTuple):
 
     @property
     def token(self) -> str:
-        """The secret of its address."""
+        """The secret in its URL."""
         return urlsplit(self.url).fragment.removeprefix("token=")
 
     @property
@@ -92,7 +92,7 @@ class Studio(NamedTuple):
 
 @contextmanager
 def running(*words: str, edition: str = "mycobot280", first: str = "") -> Iterator[Studio]:
-    """Run a server, after other Python statements; end it with Ctrl-C, as users do."""
+    """Run a server, after the Python statements in ``first``; end it with Ctrl-C, as users do."""
     script = f"{first}\nfrom cobotwire.cli import main; main()"
     command = [sys.executable, "-c", script, "--edition", edition, "studio", "--no-browser", *words]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

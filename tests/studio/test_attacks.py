@@ -31,7 +31,7 @@ REFUSED: dict[str, tuple[dict[str, str], tuple[int, ...]]] = {
         {"origin": "ORIGIN", "referer": "http://127.0.0.1/#token=TOKEN"},
         (401,),
     ),
-    # A name that was rebound to this machine.
+    # DNS rebinding: the name of another site leads to this machine.
     **{
         f"to the host {host}": ({**OWN, "host": host}, (400, 421))
         for host in (
@@ -168,7 +168,7 @@ def test_page_has_no_inline_code(studio: Studio) -> None:
     assert scripts == [' src="vendor/uPlot.iife.min.js">', ' type="module" src="main.js">']
 
 
-def test_body_that_is_too_long_or_no_object_is_refused(studio: Studio) -> None:
+def test_body_that_is_too_long_or_not_an_object_is_refused(studio: Studio) -> None:
     assert studio.post("/api/preview", b"x" * (65 << 10)).status == 413
     for body in (b"", b"[]", b"{", b"1", b"[" * 30_000, b"\xff"):
         assert studio.post("/api/preview", body).status == 400

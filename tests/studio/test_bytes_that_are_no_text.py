@@ -16,7 +16,7 @@ UPGRADE = (
     b"Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
     b"Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n"
 )
-# Messages in frames with an empty mask: the first bits of each frame, and its content.
+# Messages in frames with an empty mask: the first byte of each frame, and its content.
 MESSAGES = {
     "text": [(0x81, b"\xff")],
     "text in two frames": [(0x01, b"\xc3"), (0x80, b"(")],
@@ -47,7 +47,7 @@ def _requests(studio: Studio, bad: bytes) -> dict[str, bytes]:
     }
 
 
-def test_bytes_that_are_no_text_are_answered_and_log_no_traceback() -> None:
+def test_bytes_that_are_not_text_are_answered_and_log_no_traceback() -> None:
     with running() as studio:
         for bad in BAD:
             for place, request in _requests(studio, bad).items():

@@ -55,7 +55,7 @@ def _at_rest(page: Page, angles: list[float]) -> None:
 
 
 def _sent(page: Page, command: str) -> int:
-    """Return how often a command was sent, by the list of the page."""
+    """Return how often a command was sent, according to the list on the page."""
     page.choose("queries", "hide")
     page.choose("by-direction", "sent")
     found = 'document.querySelector("#by-command option[value={}]")'

@@ -128,7 +128,7 @@ def test_line_is_filtered_searched_paused_and_explained(opened: Page) -> None:
     opened.until(f"{ROWS}.every((row) => row.children[1].textContent === '←')")
     opened.click("#pause")
     opened.until("document.getElementById('line-count').textContent.includes('more received')")
-    # What came before the pause may be drawn in the next frame.
+    # What arrived before the pause may be drawn in the next frame.
     opened.get(
         "new Promise((go) => requestAnimationFrame(() => requestAnimationFrame(() => go(1))))"
     )
@@ -221,7 +221,7 @@ def test_page_fits_and_axe_finds_nothing_serious(opened: Page, width: int, dark:
     )
     visible = "document.getElementById('stop').getBoundingClientRect()"
     assert opened.get(f"{visible}.top >= 0 && {visible}.bottom <= innerHeight")
-    # In the dark only colours differ.
+    # Dark mode differs only in its colours.
     rules = ", runOnly: ['color-contrast']" if dark else ""
     opened.get(AXE.read_text())
     found: list[dict[str, Any]] = opened.get(
@@ -287,7 +287,7 @@ def test_markup_on_the_line_stays_text(page: Page) -> None:
         assert page.complaints == []
 
 
-def test_edition_without_geometry_gives_the_place_of_the_arm_to_the_curves(page: Page) -> None:
+def test_curves_take_the_place_of_an_arm_without_geometry(page: Page) -> None:
     page.show()
     with running(edition="mercury_a1") as studio:
         page.open(studio.url)

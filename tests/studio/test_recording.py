@@ -155,7 +155,7 @@ def test_wrong_selection_is_refused(studio: Studio, query: str) -> None:
     ],
     ids=["missing", "text", "empty"],
 )
-def test_file_that_is_no_recording_is_named(
+def test_file_that_is_not_a_recording_is_rejected_with_the_reason(
     tmp_path: Path, data: bytes | None, error: type[CobotwireError], sentence: str
 ) -> None:
     path = tmp_path / "arm.pcapng"

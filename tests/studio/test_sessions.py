@@ -1,4 +1,4 @@
-"""Check the parts between the line and the pages, on every edition and on bad lines."""
+"""Check the parts between the transport and the pages, for every edition and with faults."""
 
 from __future__ import annotations
 
@@ -242,7 +242,7 @@ def test_every_byte_of_a_bad_line_is_in_one_entry(line: ArmLine) -> None:
 
 @pytest.fixture
 def idle_line() -> Iterator[ArmLine]:
-    """Return the line of an arm that has power and is not polled."""
+    """Return the studio's line to an arm that has power and is not polled."""
     arm = SimulatedArm(mycobot280.TABLE, powered=True)
     with (
         TcpServer(arm.connect) as server,

@@ -12,7 +12,7 @@ let name, table, index;
 const hex = (bytes) => Buffer.from(bytes).toString("hex").toUpperCase();
 const bytesOf = (digits) => Uint8Array.from(Buffer.from(digits, "hex"));
 
-// A text stands for itself, a number that is not finite, or bytes.
+// Return what a text may stand for besides itself: a number that is not finite, or bytes.
 function meant(value) {
   if (Array.isArray(value)) return value.map(meant);
   return typeof value === "string" ? (NUMBERS[value] ?? bytesOf(value)) : value;

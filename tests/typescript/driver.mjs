@@ -1,5 +1,5 @@
-// A client at the other end of a pipe: calls come in and their results go out, one JSON object a
-// line. Every write is reported with its times, by the monotonic clock of the machine.
+// A client that a test controls: it reads calls from standard input and prints their results, one
+// JSON object per line. It also prints each write, with start and end by the monotonic clock.
 //
 // `tests/probe_client.py` is the other end.
 import { readFileSync } from "node:fs";

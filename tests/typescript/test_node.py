@@ -157,7 +157,7 @@ def test_stream_yields_samples_with_times() -> None:
     assert talk_with_arm("stream")[0] == [[10, True]]
 
 
-def test_event_comes_without_a_request() -> None:
+def test_event_arrives_without_a_request() -> None:
     [[event, lost]], _ = talk_with_arm("events", pro630.TABLE)
     assert set(event) >= {"status"}
     assert lost == 0
@@ -200,7 +200,7 @@ def test_late_reply_to_earlier_client_is_not_paired_with_request_of_next() -> No
             read_all(connection)
             answered.set()
             return
-        connection.sendall(bytes.fromhex("FEFE043B0001FA"))  # the late one
+        connection.sendall(bytes.fromhex("FEFE043B0001FA"))  # the late reply
         while connection.recv(6):
             connection.sendall(bytes.fromhex("FEFE043B0002FA"))
 

@@ -18,7 +18,7 @@ from pymycobot_classes import library, peer_on
 from pymycobot_ports import RecordingPort
 from recorded_pins import Pins
 
-# A port that is not one of the two arms of a Mercury B1 or X1; the class asks for the name.
+# A port that is not one of the two arms of a Mercury B1 or X1; the class checks the port's name.
 SINGLE = "/dev/ttyAMA1"
 
 
@@ -114,7 +114,7 @@ class SteppedEvent:
 
 
 class SocketFrames(ReadFrames):
-    """The frames that the class has read. Return those that it accepted, and the rest."""
+    """The frames that a class with a socket has read and accepted."""
 
     def _taken(self, frame: bytes) -> bool:
         taken, _ = self._peer._process_received(frame)

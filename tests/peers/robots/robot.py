@@ -49,7 +49,7 @@ class Robot:
         lacking: for our commands without a method, the reason.
         not_ours: for methods without a command of ours, the reason.
         own_arguments: for commands, arguments that replace those drawn from the table.
-        calls: further calls. With ``why``, the two sides differ.
+        calls: further calls.
         before: for each name of an address, the arguments that the maker's methods take first.
         without_address: commands with methods that do not take an address.
         opened: makes an object of the class on a port.

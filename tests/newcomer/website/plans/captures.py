@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from newcomer.website.planned import INSTALLED, Expected, NotRun, Plan, Program
 
-# A recording, and captures of raw bytes and of a compressed recording, in a folder.
+# A recording, and a folder with two captures of raw bytes.
 RECORDED = r"""
 cobotwire call /dev/ttyACM0 get_angles --record arm.pcapng
 mkdir captures

@@ -5,7 +5,7 @@ from __future__ import annotations
 from newcomer.website.planned import INSTALLED, Expected, NotRun, Plan, Program
 from newcomer.website.plans.readme import SIM
 
-# The class of another robot takes the port that the page names, and opens a simulated one.
+# Replace the client class of another robot: it ignores the page's port and opens a simulated arm.
 SIMULATED = """\
 from cobotwire.editions import load
 from cobotwire.simulator import PtyServer, RunningClock, SimulatedArm

@@ -1,4 +1,4 @@
-"""The README, the landing page, the quick start and the list of verbs."""
+"""The README, the landing page, the quick start and the list of subcommands."""
 
 from __future__ import annotations
 

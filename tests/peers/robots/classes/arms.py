@@ -8,7 +8,7 @@ from typing import Any
 from robots.robot import Call, Robot
 
 _ZERO = [0] * 6
-_OLD = {"jog_stop": "a command of the document's edition, which the 280 keeps"}
+_OLD = {"jog_stop": "a command of the edition mycobot, which the 280 keeps"}
 _OTHER_NAME = "the older class for the 280 has the method"
 
 
@@ -61,7 +61,7 @@ _280_RDKX5 = Robot(
     lacking=_OLD | dict.fromkeys(("jog_increment", "get_radians", "send_radians"), _OTHER_NAME),
     calls=_synchronous(_ZERO, _ZERO, 1),
 )
-# The maker's older class: here, its requests of the document's edition.
+# The maker's older class, with its requests of the edition mycobot.
 _OLDEST = Robot(
     "MyCobot",
     "mycobot",
