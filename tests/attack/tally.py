@@ -14,7 +14,7 @@ COLUMNS = {
     "right": "right",
     "honest error": "honest",
     "interrupted": "interrupted",
-    "wrong, by a limit": "limited",
+    "wrong, known limit": "limited",
     "**silently wrong**": "wrong",
     "**exception**": "exceptions",
     "**duplicate**": "duplicates",

@@ -37,7 +37,7 @@ def pages() -> list[str]:
 
 def main() -> int:
     """Run the pages; return 1 if a command prints something other than its page shows."""
-    # A shell that starts this in the background disables Ctrl-C, but some commands end only with it.
+    # A shell that starts this in the background disables Ctrl-C; some commands end only with it.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     os.environ["PATH"] = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
     os.environ["COLUMNS"] = "100"
