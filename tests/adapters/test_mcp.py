@@ -168,7 +168,7 @@ def test_stop_works_while_another_tool_waits_and_cancelling_that_tool_stops_the_
     assert STOP[3] in kinds[kinds.index(SEND_ANGLES, 1) :]
 
 
-def test_silent_client_has_its_motion_stopped_once() -> None:
+def test_motion_of_a_silent_client_is_stopped_once() -> None:
     async def work(client: Any, call: Call) -> None:
         await call("send_angles", **FAR)
         for _ in range(4):

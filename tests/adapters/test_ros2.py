@@ -149,7 +149,7 @@ async def test_diagnostics_report_the_state_of_transport_and_arm() -> None:
 
 
 @in_loop
-async def test_arm_follows_a_trajectory_in_its_time_and_order_of_joints() -> None:
+async def test_arm_follows_a_trajectory_with_its_times_and_its_order_of_joints() -> None:
     async with Published(silence=5) as here:
         writer = here.other.writer("rt/joint_trajectory", ros.JOINT_TRAJECTORY)
         there = [angle + 10 for angle in ANGLES]

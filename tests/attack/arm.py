@@ -1,4 +1,4 @@
-"""The arm of the campaign: it numbers its replies, and writes down what it received and sent."""
+"""The arm of the campaign: it numbers its replies, and records what it received and sent."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ def evidence_of_a_chain(second_ended: float) -> tuple[Evidence, Call]:
     return Evidence(CODEC, spans, delivered, record, 0.3), calls[-1]
 
 
-def test_call_that_ended_before_its_reply_came_has_taken_a_copy() -> None:
+def test_call_that_ended_before_its_reply_arrived_took_a_copy() -> None:
     evidence, last = evidence_of_a_chain(second_ended=10.13)
     assert evidence.limit_of(last, kept=False) == COPY
 

@@ -49,7 +49,7 @@ def test_correct_client_on_good_line_is_right_in_each_call(client: str, tcp: boo
     assert counts(tally) == []
 
 
-def test_late_reply_that_is_not_waited_for_is_silently_wrong(
+def test_client_that_does_not_wait_for_late_replies_is_silently_wrong(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(OutstandingReplies, "held_until", lambda self, request: None)
@@ -79,7 +79,7 @@ def nothing(call: Method) -> Method:
 
 
 def another(call: Method) -> Method:
-    """Send a motion that nobody called, then the request."""
+    """Send a motion that no user called, then the request."""
 
     def instead(arm: Any, **options: Any) -> None:
         arm.send_angles([0.0, 0.0, 0.0, 0.0, 0.0, 1.0], 77)
@@ -136,7 +136,7 @@ def test_broken_client_shows_in_its_column(
     assert counts(attack(chosen(**changes), change)) == columns
 
 
-def test_process_that_fails_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_call_of_a_failed_process_counts_as_lost(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.executable", "/bin/false")
     assert counts(attack(chosen("starts"))) == ["lost"]
 

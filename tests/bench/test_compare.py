@@ -24,7 +24,7 @@ def test_row_differs_only_if_the_middle_half_of_its_ratios_excludes_one(
     assert Compared("row", [1.0] * 5, theirs).verdict == verdict
 
 
-def test_two_trees_run_the_same_rows_in_one_comparison() -> None:
+def test_two_source_trees_run_the_same_rows_in_one_comparison() -> None:
     words = ["--megabytes", "0.1", "--frames", "500", "--rows", "memcpy in two|encode"]
     found = list(compare.compare((compare.ROOT, compare.ROOT), 2, words))
     names = ["memcpy in two threads", "encode send_angles", "encode send_angles"]

@@ -53,7 +53,7 @@ def test_picture_shows_every_joint_or_the_page_says_why_there_is_none(
     assert ("There is no picture" in html) == (robot.geometry is None)
 
 
-def test_page_lists_each_command_with_its_place(site: Path) -> None:
+def test_page_links_each_command_to_its_section(site: Path) -> None:
     html = (site / "robots" / "mycobot280.html").read_text(encoding="utf-8")
     linked = re.findall(r'href="\.\./reference/mycobot280/\w+\.html#([\w-]+)"', html)
     commands = [command.name for command in load("mycobot280").TABLE.commands]

@@ -95,7 +95,9 @@ def test_pytest_of_the_robot_program_passes_and_finds_a_defect(tmp_path: Path) -
     assert "3 failed" in caught.value.__notes__[0]
 
 
-def test_http_server_reads_moves_and_refuses(arm: tuple[SimulatedArm, str]) -> None:
+def test_http_server_reads_angles_moves_the_arm_and_refuses_bad_requests(
+    arm: tuple[SimulatedArm, str],
+) -> None:
     with started(sys.executable, FOLDER / "http_server.py", arm[1], "0") as server:
         assert server.stdout is not None
         url = server.stdout.readline().strip()

@@ -192,7 +192,9 @@ WRONG = {
 
 
 @pytest.mark.parametrize(("inside", "sentence"), WRONG.values(), ids=WRONG)
-def test_file_that_states_no_arm_is_refused_with_its_reason(inside: str, sentence: str) -> None:
+def test_file_that_does_not_describe_an_arm_is_refused_with_the_reason(
+    inside: str, sentence: str
+) -> None:
     whole = inside.startswith(("robot", "<a/>", "<!", "<?"))
     with pytest.raises(UsageError, match=re.escape(sentence)):
         read_urdf((inside if whole else f"<robot>{inside}</robot>").encode(), 3)
@@ -222,7 +224,7 @@ def test_tip_chooses_the_flange_among_several_ends() -> None:
         with_urdf(TABLE, None, "flange")
 
 
-def test_arm_that_no_urdf_can_state_is_refused_with_its_reason() -> None:
+def test_arm_that_urdf_cannot_describe_is_refused_with_the_reason() -> None:
     table = TABLE._replace(robot=Robot(Dimensions(((0.0, 0.0, 1.0, 0.0, ((0, 0.5),)),))))
     with pytest.raises(UsageError, match="edition mycobot280: not every link is turned by its own"):
         write_urdf(table)

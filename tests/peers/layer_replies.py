@@ -57,7 +57,7 @@ _NUMBER = re.compile(r"-?\b\d+\b")
 
 
 class Reply(NamedTuple):
-    """A reply: its kind, as rulings name it; its data; the number that it carries if documented."""
+    """A reply: its kind in rulings, its data, and the documented number that it carries, if any."""
 
     kind: str
     data: bytes

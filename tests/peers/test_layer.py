@@ -112,7 +112,7 @@ def test_sample_differs_from_the_makers_class_exactly_as_ruled(name: str, part: 
 @FEW
 @pytest.mark.parametrize("name", SAMPLED)
 @given(data=st.data())
-def test_drawn_reply_is_read_alike_or_its_method_has_a_ruling(
+def test_drawn_reply_has_equal_results_or_its_method_has_a_ruling(
     name: str, data: st.DataObject
 ) -> None:
     robot = ALL_ROBOTS[name]

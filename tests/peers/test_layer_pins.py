@@ -1,4 +1,4 @@
-"""The pins of a myBuddy's board: the maker's class and ours call RPi.GPIO alike."""
+"""The pins of a myBuddy's board: the maker's class and ours make the same calls of RPi.GPIO."""
 
 from __future__ import annotations
 

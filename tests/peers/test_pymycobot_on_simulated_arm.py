@@ -71,7 +71,7 @@ def test_setter_without_acknowledgement_is_sent_three_times_and_each_moves_the_a
         assert found.received.count("get_angles") == 1
 
 
-def test_angle_between_steps_is_truncated_where_ours_is_rounded() -> None:
+def test_pymycobot_truncates_an_angle_that_our_client_rounds() -> None:
     with driven("MyCobot280", "mycobot280") as found:
         found.peer.send_angle(1, 0.58, 100)
         # 0.58 is sent as 0.57, which is nearer to the sixth tick than to the seventh.

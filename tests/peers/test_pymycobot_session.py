@@ -19,7 +19,7 @@ POSE = [30.0, -20.0, -35.0, 25.0, 40.0, 15.0]
 NEAR = [20.0, -25.0, -30.0, 20.0, 35.0, 10.0]
 # Any result; and the coordinates that the session read at POSE, as an argument or a result.
 ANY, READ = "any", "the coordinates read before"
-# pymycobot waits 0.3 s (TCP) or 0.5 s if no reply comes, and 15 s for a motion that never ends.
+# pymycobot waits 0.3 s (TCP) or 0.5 s if no reply arrives, and 15 s for a motion that never ends.
 REPLY_SECONDS, MOTION_SECONDS = 0.28, 10.0
 
 

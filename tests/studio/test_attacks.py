@@ -97,7 +97,7 @@ def test_second_header_does_not_hide_the_first(
 
 
 @pytest.mark.parametrize("name", ["localhost", "127.0.0.1", "[::1]"])
-def test_names_of_this_machine_are_served(studio: Studio, name: str) -> None:
+def test_request_to_a_name_of_this_machine_is_served(studio: Studio, name: str) -> None:
     assert studio.request("/", headers={"host": f"{name}:{studio.port}"}).status == 200
 
 
@@ -252,7 +252,7 @@ def test_values_that_the_edition_does_not_allow_are_not_sent(studio: Studio) -> 
             assert studio.post("/api/scenario", {"name": name}, page).status == 400
 
 
-def test_invalid_wishes_are_ignored(studio: Studio) -> None:
+def test_invalid_messages_of_a_page_are_ignored(studio: Studio) -> None:
     with watching(studio) as feed:
         feed.state("hello")
         for text in ("", "[]", "{", '{"wish":"play"}', '{"wish":"stop","number":[]}', "[" * 4000):

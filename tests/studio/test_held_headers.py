@@ -46,7 +46,7 @@ def studio() -> Iterator[Studio]:
         yield server
 
 
-# The limit holds for four requests and a feed in turn.
+# A stall of the machine would add to the time of four requests and a feed, one after another.
 @pytest.mark.stall(0.1)
 @pytest.mark.parametrize("way", WAYS)
 def test_page_stops_the_arm_and_another_opens_while_connections_are_held(

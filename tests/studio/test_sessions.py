@@ -85,7 +85,7 @@ def test_every_edition_has_facts_for_the_page(name: str) -> None:
 
 @pytest.mark.parametrize("limits", [Limits(), Limits(speed=20)], ids=["unlimited", "slow"])
 @pytest.mark.parametrize("name", EDITIONS)
-def test_what_a_control_sends_is_a_request_of_the_edition(name: str, limits: Limits) -> None:
+def test_each_control_sends_a_request_of_the_edition(name: str, limits: Limits) -> None:
     edition = editions.load(name).TABLE
     table = limited(edition, limits)
     found = controls(table, refusals(edition, limits))

@@ -12,7 +12,7 @@ pub(crate) struct Seam {
 
 /// The bytes around the seam between two calls. Positions count from the first kept byte.
 pub(crate) struct Crossing {
-    /// The kept bytes, and the bytes of the new chunk that frames from there can cover.
+    /// The kept bytes, and the bytes of the new chunk that frames starting in them can cover.
     pub(crate) data: Vec<u8>,
     /// The number of kept bytes; the new chunk starts there.
     pub(crate) seam: usize,
@@ -34,8 +34,8 @@ impl Seam {
         self.kept.len()
     }
 
-    /// Skip that many bytes if no earlier byte is pending; return the position of the first.
-    /// `None`: earlier bytes wait, and nothing changed.
+    /// Skip `count` bytes; return the position of the first one in the stream. `None`: earlier
+    /// bytes wait, and nothing changed.
     #[inline]
     pub(crate) fn pass(&mut self, count: usize) -> Option<u64> {
         if !self.kept.is_empty() {

@@ -6,5 +6,5 @@ libfuzzer_sys::fuzz_target!(
     init: {
         subjects::all();
     },
-    |data: &[u8]| laws::columns::columns_hold_what_frames_read_as(data)
+    |data: &[u8]| laws::columns::columns_hold_the_values_of_their_frames(data)
 );

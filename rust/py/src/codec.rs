@@ -193,7 +193,7 @@ impl NativeCodec {
         reader.all_of(data, out, workers.0)
     }
 
-    /// Return a reader for a stream that comes in chunks, or is larger than memory.
+    /// Return a reader for a stream that arrives in chunks, or is larger than memory.
     #[pyo3(
         signature = (listening = None, *, raw = false, offset = None),
         text_signature = "($self, listening='both', *, raw=False, offset=0)"

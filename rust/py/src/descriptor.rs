@@ -88,7 +88,7 @@ struct Wait<'fd> {
 }
 
 impl Wait<'_> {
-    /// Return a wait of that many seconds; None if it takes no time.
+    /// Return a wait of `timeout` seconds; None if it takes no time.
     fn new(timeout: f64, alarm: RawFd) -> PyResult<Option<Self>> {
         Ok(if timeout > 0.0 {
             Some(Self {
@@ -120,7 +120,7 @@ fn is_ready(
                 let [_, alarm] = &polled;
                 return Ok(alarm.revents().is_empty());
             }
-            // A signal came. Its handler runs here, and may raise KeyboardInterrupt.
+            // A signal arrived. Its handler runs here, and may raise KeyboardInterrupt.
             Err(Errno::INTR) => py.check_signals().map_err(Fault::Handler)?,
             Err(error) => return Err(Fault::System(error)),
         }

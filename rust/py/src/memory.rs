@@ -73,7 +73,7 @@ impl Memory {
 
     /// Take the column out, and leave an empty one; fail if a view of it exists.
     pub fn take(&self) -> PyResult<Column> {
-        // The lock is held once: no view can come between the check and the replacement.
+        // The lock is held throughout: no view can be made between the check and the replacement.
         let mut held = self.held();
         if held.views > 0 {
             let text = "out is still used by a memoryview or an array";

@@ -29,7 +29,7 @@ pub fn old_offsets(out: &Bound<'_, PyAny>) -> PyResult<Offsets> {
     })
 }
 
-/// Return the memories of the noise of earlier results: the positions of its spans, their sizes.
+/// Return the `Memory` objects of the noise of an earlier result: offsets and sizes of its spans.
 fn noise_of<'py>(out: &Bound<'py, PyAny>) -> PyResult<[Bound<'py, Memory>; 2]> {
     let (offsets, sizes) = out.getattr("_noise")?.extract()?;
     Ok([offsets, sizes])
@@ -78,7 +78,7 @@ pub fn old_columns(edition: &Edition, out: &Bound<'_, PyAny>) -> PyResult<Column
     Ok(old)
 }
 
-/// The memories of some rows.
+/// The `Memory` objects of the rows of one variant.
 struct Memories<'py> {
     offset: Bound<'py, Memory>,
     address: Option<Bound<'py, Memory>>,

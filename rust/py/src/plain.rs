@@ -1,4 +1,4 @@
-//! Reads exact numbers, in exact tuples and lists, for the templates of the core.
+//! Reads numbers for the templates of the core: only exact `int` and `float` objects, in exact `tuple` and `list` objects, not those of subclasses.
 //!
 //! Reading them runs no code of the caller. So if it stops at another value or at a mistake, `given`
 //! can read all values again.

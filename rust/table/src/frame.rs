@@ -152,7 +152,7 @@ pub(crate) fn frame_format(
     })
 }
 
-/// Return bytes, which are pairs of hexadecimal digits.
+/// Return the bytes that a text states as pairs of hexadecimal digits.
 fn hex(record: Record<'_>, key: &str, sizes: RangeInclusive<usize>) -> Outcome<Vec<u8>> {
     let text: &str = record.any(key)?;
     let digits: Vec<char> = text.chars().filter(|char| *char != ' ').collect();
@@ -162,7 +162,11 @@ fn hex(record: Record<'_>, key: &str, sizes: RangeInclusive<usize>) -> Outcome<V
     });
     match bytes.collect::<Option<Vec<u8>>>() {
         Some(bytes) if sizes.contains(&bytes.len()) => Ok(bytes),
-        _ => BadEdition::because(format!("{key} must be {sizes:?} bytes, as pairs of digits")),
+        _ => {
+            let (least, most) = sizes.into_inner();
+            let text = format!("{key} must be {least} to {most} bytes, as pairs of hex digits");
+            BadEdition::because(text)
+        }
     }
 }
 

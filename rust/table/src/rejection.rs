@@ -16,7 +16,7 @@ use crate::texts::{bad_argument, either, entry, hex, one_or, protocol_error, tex
 use crate::value::{general, join, printable, shortest};
 use crate::{Edition, Field, Number, Value};
 
-// A link to a file of the Python package; a package of this crate contains the file.
+// Here a symbolic link to a file of the Python package; a published crate contains the file.
 pub(crate) const UNITS: &str = include_str!("../units.json");
 
 /// A field with its names, in one of its cases.
@@ -274,7 +274,7 @@ impl Part<'_> {
         }
     }
 
-    /// Return what a number of the field may be.
+    /// Return the allowed values of a number of the field, in words.
     fn allowed(&self, at: usize) -> String {
         let Some((number, names)) = self.numbers.get(at).zip(self.named(at)) else {
             return String::new();
@@ -315,7 +315,7 @@ impl Part<'_> {
     }
 }
 
-/// Return what a number without choices may be.
+/// Return the allowed values of a number without choices, in words.
 fn range(number: &WireNumber, unit: &str) -> String {
     let natural = number.natural_range();
     let kind = match number.is_float() {

@@ -14,7 +14,7 @@ use cobotwire_core::{Decoded, Direction, EncodeError, decode};
 use crate::value::{is_printable, join, printable, quoted};
 use crate::{Edition, Field, Value};
 
-// A link to a file of the Python package; a package of this crate contains the file.
+// Here a symbolic link to a file of the Python package; a published crate contains the file.
 const TEMPLATES: &str = include_str!("../error_texts.json");
 /// An error shows at most this many characters of a value.
 const MOST: usize = 80;

@@ -1,4 +1,4 @@
-//! Messages: a value as bytes. Each begins with a byte that says which kind it is.
+//! Messages: values as bytes. A value begins with a byte that states its kind.
 
 use cobotwire::Value;
 

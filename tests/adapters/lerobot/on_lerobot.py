@@ -45,7 +45,7 @@ def run(program: str, folder: Path, *options: str) -> None:
     )
 
 
-def test_episode_that_a_hand_led_is_recorded_and_replayed(tmp_path: Path) -> None:
+def test_episode_led_by_hand_is_recorded_and_replayed(tmp_path: Path) -> None:
     clock = RunningClock()
     follower, leader = (SimulatedArm(TABLE, clock=clock, powered=True) for _ in range(2))
     leader.lead(HAND)

@@ -40,8 +40,8 @@ pub trait Sink {
     /// Receive noise to diagnose.
     fn noise(&mut self, offset: u64, data: &[u8], reason: Reason);
 
-    /// Diagnose the noise received so far; `closed`: no later noise belongs to it. Its packets of
-    /// the servo bus change `expected`.
+    /// Diagnose the noise received so far; `closed`: no later noise belongs to it. Servo packets in
+    /// it update `expected`.
     fn diagnose(&mut self, closed: bool, expected: &mut Expected);
 
     /// Return what is wrong with bytes that are not a legal message.

@@ -24,7 +24,7 @@ const PIECES: usize = 5;
 /// A batch has rows for every variant of the table, so many batches would be slow.
 const MOST_BATCHES: usize = 8;
 
-pub fn columns_hold_what_frames_read_as(data: &[u8]) {
+pub fn columns_hold_the_values_of_their_frames(data: &[u8]) {
     let input = Input::read(data);
     let source = Source {
         table: &input.subject.table,

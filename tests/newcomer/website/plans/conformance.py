@@ -44,7 +44,7 @@ END
             r"/dev/pts/\d+", served=True, code=2
         ),
         "cobotwire --edition mycobot280 conform client --listen socket://127.0.0.1:9000"
-        # No client comes, so no call of the script is seen.
+        # No client connects, so no call of the script is seen.
         " --expect calls.txt": Expected(r"socket://127\.0\.0\.1:9000", served=True, code=1),
         "cobotwire --edition mycobot280 conform codec -- python -m"
         " cobotwire.conformance.codec.adapter native": Expected(r"\d+ pass"),
