@@ -1,4 +1,5 @@
-//! Reads numbers for the templates of the core: only exact `int` and `float` objects, in exact `tuple` and `list` objects, not those of subclasses.
+//! Reads numbers for the templates of the core: only exact `int` and `float` objects, in exact
+//! `tuple` and `list` objects, not those of subclasses.
 //!
 //! Reading them runs no code of the caller. So if it stops at another value or at a mistake, `given`
 //! can read all values again.
