@@ -20,7 +20,7 @@ NO_LINGER = struct.pack("ii", 1, 0)
 
 
 class PtyEnd:
-    """The master of a pty; the URL is a link, since each new pty has another name.
+    """The master of a pty; the URL is a symbolic link, since each new pty has another name.
 
     ``read`` and ``write`` raise an OSError if no client is connected.
 

@@ -22,7 +22,7 @@ SHOULDER: tuple[Row, ...] = (
     (180, -90, 30, 205),
     (180, 90, -30, 0),
 )
-# Offset, alpha, a and d of each link. The arms are examples of other arrangements than the 280's.
+# Offset, alpha, a and d of each link. The joints of these arms are arranged unlike the 280's.
 ARMS: dict[str, tuple[Row, ...]] = {
     "five joints": ((0, 90, 0, 100), *((0, 0, 120, 0),) * 2, (0, 90, 0, 0), (0, 0, 0, 80)),
     "six joints with a spherical wrist": (*ELBOW, (0, -90, 0, 0), (0, 0, 0, 60)),
@@ -32,7 +32,7 @@ ARMS: dict[str, tuple[Row, ...]] = {
     ),
     "seven joints": (*SHOULDER, (180, 90, 0, 206), (90, 90, 38, 0), (0, 0, 0, 46)),
 }
-# A level end: its link turns back by as much as the arm's second and third joint turn it.
+# An end that stays level: its link turns back by the angles of the second and the third joint.
 LEVEL = Geometry(
     (
         Link(0, 90, 0, 120),

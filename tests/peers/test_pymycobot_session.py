@@ -1,4 +1,4 @@
-"""pymycobot, unmodified, runs a whole session over a pty and over TCP, with its own waiting."""
+"""pymycobot, unmodified, runs a whole session over a pty and over TCP, with its own timeouts."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from robots.robot import LOCAL, Call, Robot
 _PRO = {"angle": (11, 12), "torque": (27, 28), "speed": (32, 33)}
 _HAND = {"angle": (11, 12), "torque": (27, 28), "p": (15, 16), "d": (17, 18), "i": (19, 20)}
 _HAND |= {"clockwise": (21, 22), "counterclockwise": (23, 24), "min_pressure": (25, 26)}
-# Methods that write or read one register of a tool, by our commands for any register.
+# Methods for one register of a tool; ours are the commands for any register.
 _TOOLS = [
     *(
         Call(f"set_pro_gripper_{what}", (50,), "set_pro_gripper", (at, 50))
@@ -54,7 +54,7 @@ _TOOLS = [
         ([1, 2, 3, 4, 5, 6], 50),
     ),
     Call("get_hand_gripper_angles", (), "get_hand_gripper", (50, 0)),
-    # Two bytes, which are one word.
+    # The two arguments are bytes, and the request has them as one word.
     Call(
         "set_hand_gripper_pinch_action_speed_consort", (4, 5), "set_pro_gripper", (52, 4 * 256 + 5)
     ),
