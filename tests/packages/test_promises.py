@@ -130,11 +130,15 @@ def test_edition_of_a_release_that_cannot_be_loaded_is_found(tmp_path: Path) -> 
     ]
 
 
-def test_subcommands_options_and_exit_codes_are_listed() -> None:
-    expected = {
-        "cobotwire call --json",
-        "cobotwire conform device",
-        "cobotwire studio --host",
+def test_added_subcommands_options_and_exit_codes_are_found(tmp_path: Path) -> None:
+    cli = "python/cobotwire/cli"
+    empty = dict.fromkeys(("python/cobotwire/__init__.py", f"{cli}/__init__.py"), "")
+    app = {f"{cli}/app.py": "import click\n\napp = click.Group()\n"}
+    codes = {f"{cli}/shared/exit_codes.py": "CODES = ()\n"}
+    found = {*promises.command_line(tree(tmp_path, empty | app | codes), ROOT)}
+    assert {one.rule for one in found} == {"word-added"}
+    assert {one.where for one in found} >= {
+        *("cobotwire call --json", "cobotwire conform device", "cobotwire studio --host"),
         "exit code 3: LinkError",
     }
 
