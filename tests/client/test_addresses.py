@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+import time
 from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
@@ -11,8 +13,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from both_ways import InLoop
-from cobotwire import MyBuddy, ReplyTimeout, UsageError
+from cobotwire import DeadMan, MyBuddy, ReplyTimeout, UsageError
 from cobotwire import codec as codecs
+from cobotwire.client.aio_dead_man import AsyncDeadMan
 from cobotwire.diagnose.explain import format_message, frame_parts
 from cobotwire.editions import mybuddy
 from cobotwire.protocol.addresses import find_address
@@ -22,6 +25,7 @@ from cobotwire.simulator import MemoryTransport, PtyServer, SimulatedArm, Steppe
 from conformance.device.testing import Altered, permissions, prepared
 from memory_peer import MemoryPeer
 from session.one_caller import submit
+from transport.ends import PtyEnd
 from trial_specs import HEAD, edition_of, package_of
 
 DUO = f"""
@@ -156,6 +160,35 @@ def test_failure_in_the_block_stops_every_address_that_was_used(duo: Any) -> Non
         arm.right.send_angles((1, 2), 50)
         raise ZeroDivisionError
     assert peer.received.endswith(bytes.fromhex("FE FE 01 02 29 29 FE FE 02 02 29 29"))
+
+
+@pytest.mark.parametrize("asynchronous", [False, True])
+@pytest.mark.parametrize("by", ["block", "dead man"])
+def test_stop_through_a_view_reaches_the_device_of_the_first_client(
+    duo: Any, asynchronous: bool, by: str
+) -> None:
+    pty = PtyEnd()
+    if asynchronous:
+        asyncio.run(_stop_in_loop(duo.AsyncTrial(pty.url, address=LEFT), by))
+    else:
+        first = duo.Trial(pty.url, address=LEFT)
+        with suppress(ZeroDivisionError), first.right.left.right as view:
+            assert view.left is first
+            if by == "block":
+                raise ZeroDivisionError
+            with DeadMan(view, 0.01):
+                time.sleep(0.1)
+    assert pty.drain() == bytes.fromhex("FE FE 01 02 29 29 FE FE 02 02 29 29")
+    pty.unplug()
+
+
+async def _stop_in_loop(first: Any, by: str) -> None:
+    with suppress(ZeroDivisionError):
+        async with first.right as view:
+            if by == "block":
+                raise ZeroDivisionError
+            async with AsyncDeadMan(view, 0.01):
+                await asyncio.sleep(0.1)
 
 
 @pytest.mark.parametrize("given", [7, "top", True])

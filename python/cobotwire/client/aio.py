@@ -69,7 +69,7 @@ class AsyncClient:
         self.codec = self._settings.codec.name
         self._address = find_address(self.table, address)
         self._encoder = self._settings.encoder(self._address)
-        # This client for other addresses, by the address byte.
+        # The clients of all addresses, by the address byte; empty before the first view.
         self._views: dict[int, Self] = {}
         codec_used = self._settings.codec
         speed = self.table.baudrate if baudrate is None else baudrate
@@ -139,6 +139,9 @@ class AsyncClient:
         wanted = named_address(self.table, address)
         if wanted == self._address:
             return self
+        if self._address is not None:
+            # A stop through any of the views reaches this client's device too.
+            self._views.setdefault(self._address.value, self)
         found = self._views.get(wanted.value)
         if found is None:
             found = copy(self)
@@ -252,7 +255,7 @@ class AsyncClient:
     async def _stop_all_for(self, error: BaseException) -> None:
         """Send ``stop`` once for an error to each address that was used."""
         interrupt: BaseException | None = None
-        clients: list[AsyncClient] = [self, *self._views.values()]
+        clients: list[AsyncClient] = [*self._views.values()] or [self]
         for client in clients:
             try:
                 await client._stop_for(error)
@@ -296,7 +299,7 @@ class AsyncClient:
             LinkError: the transport is gone.
         """
         stop = self.table.in_role("stop").request_type()
-        clients: list[AsyncClient] = [self, *self._views.values()]
+        clients: list[AsyncClient] = [*self._views.values()] or [self]
         for client in clients:
             await client._send(stop, deadline=inf)
 

@@ -103,7 +103,7 @@ class Client:
         self.codec = self._settings.codec.name
         self._address = find_address(self.table, address)
         self._encoder = self._settings.encoder(self._address)
-        # This client for other addresses, by the address byte.
+        # The clients of all addresses, by the address byte; empty before the first view.
         self._views: dict[int, Self] = {}
         codec_used = self._settings.codec
         speed = self.table.baudrate if baudrate is None else baudrate
@@ -161,6 +161,9 @@ class Client:
         wanted = named_address(self.table, address)
         if wanted == self._address:
             return self
+        if self._address is not None:
+            # A stop through any of the views reaches this client's device too.
+            self._views.setdefault(self._address.value, self)
         found = self._views.get(wanted.value)
         if found is None:
             found = copy(self)
@@ -275,7 +278,7 @@ class Client:
     def _stop_all_for(self, error: BaseException) -> None:
         """Send ``stop`` once for an error to each address that was used."""
         interrupt: BaseException | None = None
-        clients: list[Client] = [self, *self._views.values()]
+        clients: list[Client] = [*self._views.values()] or [self]
         for client in clients:
             try:
                 client._stop_for(error)
@@ -319,7 +322,7 @@ class Client:
             LinkError: the transport is gone.
         """
         stop = self.table.in_role("stop").request_type()
-        clients: list[Client] = [self, *self._views.values()]
+        clients: list[Client] = [*self._views.values()] or [self]
         for client in clients:
             client._send(stop, deadline=inf)
 
