@@ -9,6 +9,7 @@ from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
+from math import inf
 
 from cobotwire.protocol.errors import LinkError
 from cobotwire.transport import forks
@@ -62,6 +63,8 @@ class PolledTransport:
 
     def write(self, data: bytes, done: Done) -> bool:
         """Send ``data`` after what was sent before."""
+        if self._closed:
+            raise LinkError(self._transport.url, "was closed")
         if not self._unwritten:
             taken = self._transport.write_some(data)
             if taken == len(data):
@@ -77,9 +80,9 @@ class PolledTransport:
         """Return whether everything that was written was taken, and there is room for more."""
         return not self._unwritten and has_room(self._transport)
 
-    def end_writing(self) -> None:
-        """Stop sending the writes that were not taken yet."""
-        if self._unwritten:
+    def end_writing(self, most: float = inf) -> None:
+        """Stop sending what was not taken yet, if at most ``most`` bytes of it were taken."""
+        if self._unwritten and self._taken <= most:
             taken = f"only {self._taken} of {len(self._unwritten[0][0])} bytes were taken in time"
             self._end_writing(LinkError(self._transport.url, f"cannot be written: {taken}"))
 
@@ -176,6 +179,8 @@ class ThreadedTransport:
 
     def write(self, data: bytes, done: Done) -> bool:
         """Send ``data`` after what was sent before."""
+        if self._closed:
+            raise LinkError(self._transport.url, "was closed")
         self._unwritten += 1
         self._write_queue.put((data, partial(self._end, done), self._failures))
         return False
@@ -184,7 +189,7 @@ class ThreadedTransport:
         """Return whether everything that was written was taken."""
         return not self._unwritten
 
-    def end_writing(self) -> None:
+    def end_writing(self, most: float = inf) -> None:
         """Do nothing: the thread that writes cannot be interrupted."""
 
     def _end(self, done: Done, error: LinkError | None) -> None:

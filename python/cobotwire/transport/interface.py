@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import inf
 from typing import Protocol, runtime_checkable
 
 from cobotwire.protocol.errors import LinkError
@@ -117,8 +118,11 @@ class AsyncTransport(Protocol):
         """Return whether all written bytes were taken, so that more may be written."""
         ...
 
-    def end_writing(self) -> None:
-        """Stop sending the writes that were not taken yet, where that is possible."""
+    def end_writing(self, most: float = inf) -> None:
+        """Stop sending what was not taken yet, where that is possible.
+
+        It is sent nevertheless if more than ``most`` bytes of the first write were taken.
+        """
         ...
 
     def close(self) -> None:
