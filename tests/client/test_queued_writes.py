@@ -12,9 +12,11 @@ import pytest
 from cobotwire import LinkError
 from cobotwire.editions.mycobot280 import AsyncMyCobot280
 from cobotwire.transport import aio
-from cut_motion import ANGLES, MOTION, STOP, frames
+from cut_motion import ANGLES, CODEC, MOTION, STOP, frames
 from recording_transport import RecordingTransport
 from transport.ends import PtyEnd
+
+ENCODER = CODEC.encode("get_encoder", "request", [1])
 
 
 class FullPort:
@@ -103,6 +105,19 @@ def test_cancelled_motion_is_not_sent_unless_it_was_begun(room: int) -> None:
         await arm.stop()
 
     assert received_after(scenario, room) == [MOTION] * (room > 0) + [STOP, STOP]
+
+
+@pytest.mark.parametrize("room", [0, 5])
+def test_cancelled_request_with_a_reply_is_not_sent_unless_it_was_begun(room: int) -> None:
+    async def scenario(arm: AsyncMyCobot280, port: FullPort) -> None:
+        first = await started(arm.get_encoder(1))
+        second = await started(arm.get_encoder(2))
+        await cancel(first)
+        await cancel(second)
+        port.room = 1000
+        await arm.stop()
+
+    assert received_after(scenario, room) == [ENCODER] * (room > 0) + [STOP]
 
 
 class SlowTransport(RecordingTransport):

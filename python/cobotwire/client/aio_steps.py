@@ -49,6 +49,8 @@ class AsyncSteps:
         self.timers = timers_of(self.loop)
         self._timed = Timed(self._time_passed)
         self.lost: LinkError | None = None
+        # The request that the transport did not take at once.
+        self._unwritten: PendingRequest | None = None
         self._news: asyncio.Future[None] | None = None
         self.transport = attach(transport, self.turn)
         limited = deadline < inf
@@ -69,7 +71,12 @@ class AsyncSteps:
         self.turn()
 
     def give_up(self, pending: Pending) -> None:
-        """End a request if its caller waits no longer, and leave everything ready for the next."""
+        """End a request if its caller waits no longer, and leave everything ready for the next.
+
+        It is not sent any more if no byte of it was taken.
+        """
+        if pending is self._unwritten:
+            self.writer.withdraw()
         if not pending.done:
             self.exchange.give_up(pending)
             self.turn()
@@ -130,12 +137,14 @@ class AsyncSteps:
 
     def _write_request(self, pending: PendingRequest, data: bytes) -> None:
         try:
-            self.writer.begin(data, partial(self._written, pending))
+            if not self.writer.begin(data, partial(self._written, pending)):
+                self._unwritten = pending
         except LinkError as error:
             self.exchange.fail_waiting(error)
 
     def _written(self, pending: PendingRequest, error: LinkError | None) -> None:
         """Note the end of a write that the transport did not take at once."""
+        self._unwritten = None
         self.exchange.written(pending, time.monotonic())
         if error is not None:
             self.exchange.fail_waiting(error)

@@ -142,6 +142,11 @@ class AsyncWriter:
         for each, why in ended:
             each.done(why)
 
+    def withdraw(self) -> None:
+        """Do not send the request that was begun last, if no byte of it was taken."""
+        if self._current is not None:
+            self._withdraw(self._current)
+
     def _withdraw(self, write: Write) -> None:
         """Do not send a write, if no byte of its request was taken."""
         if write in self._waiting:
