@@ -21,6 +21,7 @@ from cobotwire.editions.mycobot280 import TABLE, AsyncMyCobot280, MyCobot280
 from cobotwire.kinematics import coords_of, geometry_of
 from cobotwire.protocol.effects import Moves, effect_of
 from cobotwire.protocol.limits import limited
+from cobotwire.protocol.refusals import refusals
 from cobotwire.protocol.roles import moves_arm
 from recording_transport import RecordingTransport
 from strategies import codec_of, legal_values, variants_of
@@ -63,6 +64,57 @@ def test_limits_apply_in_radians_and_to_jogging() -> None:
     with pytest.raises(UsageError):
         MyCobot(transport, limits=Limits([(-90, 90), *REST])).jog_absolute(1, 91, 20)
     assert transport.written == b""
+
+
+def test_limits_of_joints_hold_for_encoders_and_motions_without_targets() -> None:
+    transport = RecordingTransport()
+    arm = MyCobot280(transport, limits=Limits([(-5, 5), *REST]))
+    calls: list[tuple[Callable[[], Any], str]] = [
+        (lambda: arm.set_encoders([3072] * 6, 20), "its target is in encoder ticks"),
+        (lambda: arm.set_encoder(1, 3072, 20), "its target is in encoder ticks"),
+        (lambda: arm.set_encoders_drag([3072] * 6, [9] * 6), "its target is in encoder ticks"),
+        (lambda: arm.move_round(), "its target is outside of it or unknown"),
+    ]
+    for call, error in calls:
+        with pytest.raises(UsageError, match=error):
+            call()
+    assert transport.written == b""
+    arm.jog_increment(1, 90, 20)
+    arm.stop()
+    unlimited = MyCobot280(transport, limits=Limits([None] * 6))
+    unlimited.set_encoders([3072] * 6, 20)
+    assert transport.written.count(b"\xfe\xfe") == 3
+
+
+@pytest.mark.parametrize(
+    ("edition", "name", "arguments"),
+    [("mybuddy", "send_angles_auto", (50,)), ("myarm_m750", "set_joints_angle", (50,))],
+)
+def test_limits_hold_for_each_row_of_angles(edition: str, name: str, arguments: Any) -> None:
+    table = EVERY[edition]
+    joints = len(table.in_role("joint targets").request[0].fields[0].numbers)
+    limits = Limits([(-5, 5), *[None] * (joints - 1)])
+    encoder = client_settings(table, None, None, "native", limits).encoder(None)
+    encoder.encode(name, ([5.0] + [0.0] * (joints - 1), *arguments))
+    with pytest.raises(UsageError, match=r"j1 is 5\.1; allowed: a number -5\.\.5"):
+        encoder.encode(name, ([5.1] + [0.0] * (joints - 1), *arguments))
+
+
+@pytest.mark.parametrize(("lowest", "within"), [(-10, True), (1, False)])
+def test_motion_to_zero_is_refused_if_a_joint_excludes_zero(lowest: float, within: bool) -> None:
+    found = refusals(EVERY["pro630"], Limits([(lowest, 10), *REST]))
+    assert "drag_teach_execute" in found
+    assert ("over_limit_return_zero" in found) is not within
+
+
+def test_limits_of_coordinates_hold_for_both_ends_of_an_arc() -> None:
+    limits = Limits(coords=[(-100, 100), *REST])
+    encoder = client_settings(EVERY["pro630"], None, None, "native", limits).encoder(None)
+    inside, outside = [100.0, 0, 0, 0, 0, 0], [100.5, 0, 0, 0, 0, 0]
+    encoder.encode("write_move_c", (inside, inside, 20))
+    for points in ((inside, outside), (outside, inside)):
+        with pytest.raises(UsageError, match=r"x is 100\.5; allowed: a number -100\.\.100"):
+            encoder.encode("write_move_c", (*points, 20))
 
 
 @pytest.mark.parametrize("codec", NAMES)

@@ -17,7 +17,7 @@ from cobotwire.session.request import EncodedRequest, RequestEncoder
 
 
 class LimitedEncoder(RequestEncoder):
-    """Encodes requests that stay within a speed and a workspace, and refuses the others."""
+    """Encodes requests that stay within limits, and refuses the others."""
 
     def __init__(self, codec: Codec, address: Address | None, limits: Limits) -> None:
         """Store a codec; its table already has the ranges of ``limits``."""

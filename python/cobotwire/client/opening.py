@@ -44,7 +44,8 @@ class Settings(NamedTuple):
 
     def encoder(self, address: Address | None) -> RequestEncoder:
         """Return the encoder of requests to an address, within the limits."""
-        if self.limits.speed is None and self.limits.workspace is None:
+        joints, _, _, speed, workspace = self.limits
+        if joints is None and speed is None and workspace is None:
             return RequestEncoder(self.codec, address)
         # Few clients have such limits, and kinematics take long to import.
         from cobotwire.client.limited import LimitedEncoder

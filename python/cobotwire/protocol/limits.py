@@ -10,15 +10,18 @@ from collections.abc import Sequence
 from math import isfinite
 from typing import Any, NamedTuple
 
+from cobotwire.protocol.effects import Moves, effect_of
 from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.errors import UsageError
-from cobotwire.protocol.roles import picked, row_index
+from cobotwire.protocol.roles import moves_arm, picked, row_index
 from cobotwire.protocol.table import Case, Command, Field, Number, Role, Table, Variant
 
 # No number on the wire is that large, and scaling it does not overflow.
 BEYOND = 1e100
 Range = tuple[float, float]
 Ranges = Sequence[Range | None]
+# The name and the unit of a number of a target.
+Target = tuple[str, str]
 AXES = ("x", "y", "z")
 
 
@@ -27,7 +30,10 @@ class Limits(NamedTuple):
 
     None keeps the edition's limit of one joint or coordinate, or of all. ``joints`` and ``coords``
     limit only targets: commands that move the arm by a distance (``jog_increment``), or until it
-    is stopped, stay as they are. ``speed`` and ``workspace`` limit everything that moves the arm:
+    is stopped, stay as they are. ``joints`` does not limit coordinates, since the arm chooses the
+    angles for them; it refuses encoder targets, and motions that have no target in the request
+    (``drag_teach_execute``). ``coords`` does not limit coordinates in another frame
+    (``send_base_coords``). ``speed`` and ``workspace`` limit everything that moves the arm:
     commands that could exceed them are refused (``protocol/refusals``). Nothing limits ``stop``.
 
     Attributes:
@@ -61,12 +67,15 @@ def limited(table: Table, limits: Limits) -> Table:
         ("coords", limits.coords, coords),
     ):
         if ranges is not None:
-            rules.append((targets, _Rule(what, ranges, _names(table, targets[0]), limits.wider)))
+            rules.append((targets, _Rule(what, ranges, _targets(table, targets[0]), limits.wider)))
     if limits.workspace is not None:
-        rules.append((coords, _Workspace(limits.workspace, _names(table, coords[0]))))
+        rules.append((coords, _Workspace(limits.workspace, _targets(table, coords[0]))))
     commands = table.commands
     for roles, rule in rules:
-        commands = tuple(_command(each, rule) if each.role in roles else each for each in commands)
+        commands = tuple(
+            _command(each, rule) if each.role in roles else _other(table, each, rule)
+            for each in commands
+        )
     if limits.speed is not None:
         cap = _checked_speed(limits.speed)
         commands = tuple(_slower(command, cap) for command in commands)
@@ -92,21 +101,27 @@ def _ranges(table: Table) -> list[Range]:
     return [(n.physical(n.minimum), n.physical(n.maximum)) for n in numbers]
 
 
-def _names(table: Table, row: Role) -> list[str]:
-    """Return the names of the joints or coordinates that one command moves together."""
+def _targets(table: Table, row: Role) -> list[Target]:
+    """Return the names and units of the joints or coordinates that one command moves together."""
     variant = table.in_role(row).request[0]
-    return [number.name for number in variant.fields[row_index(variant)].cases[0].numbers]
+    return _row_of(variant.fields[row_index(variant)])
+
+
+def _row_of(field: Field) -> list[Target]:
+    return [(number.name, number.unit) for case in field.cases[:1] for number in case.numbers]
 
 
 class _Rule:
-    """The given ranges, and the names of the joints or coordinates that they limit."""
+    """The given ranges, and the joints or coordinates that they limit."""
 
     # Whether ranges that reach beyond the edition's are cut to these.
     _cuts = False
 
-    def __init__(self, what: str, ranges: Ranges, names: list[str], wider: bool = False) -> None:
-        self._what, self._wider, self.names = what, wider, names
-        self._ranges = checked_ranges(what, ranges, len(names))
+    def __init__(
+        self, what: str, ranges: Ranges, targets: list[Target], wider: bool = False
+    ) -> None:
+        self._what, self._wider, self.targets = what, wider, targets
+        self._ranges = checked_ranges(what, ranges, len(targets))
 
     def number(self, part: int, number: Number) -> Number:
         """Return a number of a target with the limits of its joint or coordinate."""
@@ -130,12 +145,13 @@ class _Workspace(_Rule):
 
     _cuts = True
 
-    def __init__(self, workspace: Ranges, names: list[str]) -> None:
+    def __init__(self, workspace: Ranges, targets: list[Target]) -> None:
         box = dict(zip(AXES, checked_ranges("workspace", workspace, len(AXES))))
+        names = [name for name, _ in targets]
         if not {*AXES} <= {*names}:
             message = error_text("no-coordinates", names=names)
             raise UsageError("limits.workspace", workspace, message=message)
-        super().__init__("workspace", [box.get(name) for name in names], names)
+        super().__init__("workspace", [box.get(name) for name in names], targets)
 
 
 def checked_ranges(what: str, ranges: Ranges, count: int) -> list[Range | None]:
@@ -198,9 +214,25 @@ def _command(command: Command, rule: _Rule) -> Command:
 _ROWS: tuple[Role, ...] = ("joint targets", "coordinate targets")
 
 
+def _other(table: Table, command: Command, rule: _Rule) -> Command:
+    """Limit the same joints or coordinates in a motion that has another role, or none."""
+    if not (moves_arm(table, command) and isinstance(effect_of(command), Moves)):
+        return command
+    variants = []
+    for variant in command.request:
+        for at, field in enumerate(variant.fields):
+            if _row_of(field) == rule.targets:
+                variant = _row_at(variant, at, rule)
+        variants.append(variant)
+    return command._replace(request=tuple(variants))
+
+
 def _row(variant: Variant, rule: _Rule) -> Variant:
     """Limit a variant in which one field holds all targets."""
-    at = row_index(variant)
+    return _row_at(variant, row_index(variant), rule)
+
+
+def _row_at(variant: Variant, at: int, rule: _Rule) -> Variant:
     row = variant.fields[at]
     numbers = (rule.number(part, number) for part, number in enumerate(row.cases[0].numbers))
     return _with(variant, at, row._replace(cases=(Case((), tuple(numbers)),)))
@@ -211,7 +243,7 @@ def _single(variant: Variant, rule: _Rule) -> Variant:
     picker_at, at = picked(variant)
     picker, target = variant.fields[picker_at], variant.fields[at]
     cases = []
-    for part, name in enumerate(rule.names):
+    for part, (name, _) in enumerate(rule.targets):
         value = _value_of(picker, name, part)
         case = target.case(value)
         assert case is not None, f"{name} has a case"

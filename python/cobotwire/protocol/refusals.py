@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cobotwire.protocol.effects import Stores, effect_of
+from cobotwire.protocol.effects import Moves, Stores, effect_of
 from cobotwire.protocol.error_texts import error_text
-from cobotwire.protocol.limits import Limits, is_speed
+from cobotwire.protocol.limits import Limits, Ranges, is_speed
 from cobotwire.protocol.roles import moves_arm
 from cobotwire.protocol.table import Command, Table
 
@@ -15,9 +15,10 @@ _FRAMES = frozenset({"tool", "world", "reference_frame", "end_type"})
 def refusals(table: Table, limits: Limits) -> dict[str, str]:
     """Return the commands that are not sent within ``limits``, each with the reason.
 
-    These are persistent writes, because they can change what limits mean. With a workspace they are
-    also motions to an unknown position, and settings that change what coordinates mean. With a
-    speed they are also motions that take no percentage.
+    With ranges for joints these are encoder targets, and motions to joint angles that the request
+    does not state. With a workspace or a speed they are persistent writes, because they can change
+    what limits mean. With a workspace they are also motions to an unknown position, and settings
+    that change what coordinates mean. With a speed they are also motions that take no percentage.
     """
     found = {}
     for command in table.commands:
@@ -30,9 +31,27 @@ def refusals(table: Table, limits: Limits) -> dict[str, str]:
         if limits.speed is not None and not kind and moves_arm(table, command):
             capped = all(any(map(is_speed, variant.fields)) for variant in command.request)
             kind = "" if capped else "refused-speedless"
+        if limits.joints is not None and any(limits.joints) and not kind:
+            kind = _leaves_joints(table, command, limits.joints)
         if kind:
             found[command.name] = error_text(kind, command=command.name, edition=table.edition)
     return found
+
+
+def _leaves_joints(table: Table, command: Command, joints: Ranges) -> str:
+    """Return the kind of refusal of a command that could leave the ranges of joints."""
+    if not moves_arm(table, command):
+        return ""
+    fields = [field for variant in command.request for field in variant.fields]
+    units = {number.unit for field in fields for number in field.numbers}
+    if "tick" in units:
+        return "refused-encoders"
+    effect = effect_of(command)
+    if isinstance(effect, Moves) and isinstance(effect.to, int | float):
+        inside = (each is None or each[0] <= effect.to <= each[1] for each in joints)
+        return "" if all(inside) else "refused-joints"
+    # A target, a distance or the speed of a jog has a unit.
+    return "" if units - {""} else "refused-joints"
 
 
 def _leaves_workspace(table: Table, command: Command) -> str:
