@@ -160,6 +160,18 @@ def test_lasting_writes_are_refused_within_a_speed_and_allowed_without() -> None
     assert without.written != b""
 
 
+@pytest.mark.parametrize("mode", [0, 1])
+def test_highest_speed_is_not_set_within_a_speed(mode: int) -> None:
+    transport = RecordingTransport()
+    with pytest.raises(UsageError, match="it changes what a percentage means"):
+        MercuryA1(transport, limits=Limits(speed=1)).set_max_speed(mode, 150)
+    assert transport.written == b""
+    limits = Limits(workspace=BOX)
+    client_settings(EVERY["pro450"], None, None, "native", limits).encoder(None).encode(
+        "set_max_speed", (mode, 150)
+    )
+
+
 @given(
     st.sampled_from(NAMES),
     st.sampled_from([TABLE, DOCUMENT]),

@@ -10,6 +10,8 @@ from cobotwire.protocol.table import Command, Table
 
 # The states that decide what coordinates mean: the point of the arm, and the frame of reference.
 _FRAMES = frozenset({"tool", "world", "reference_frame", "end_type"})
+# The state that decides what a speed in percent means.
+_HIGHEST_SPEED = "max_speed"
 
 
 def refusals(table: Table, limits: Limits) -> dict[str, str]:
@@ -18,7 +20,8 @@ def refusals(table: Table, limits: Limits) -> dict[str, str]:
     With ranges for joints these are encoder targets, and motions to joint angles that the request
     does not state. With a workspace or a speed they are persistent writes, because they can change
     what limits mean. With a workspace they are also motions to an unknown position, and settings
-    that change what coordinates mean. With a speed they are also motions that take no percentage.
+    that change what coordinates mean. With a speed they are also motions that take no percentage,
+    and settings of the highest speed, of which speeds are percentages.
     """
     found = {}
     for command in table.commands:
@@ -28,14 +31,24 @@ def refusals(table: Table, limits: Limits) -> dict[str, str]:
             kind = "refused-lasting"
         elif limits.workspace is not None:
             kind = _leaves_workspace(table, command)
-        if limits.speed is not None and not kind and moves_arm(table, command):
-            capped = all(any(map(is_speed, variant.fields)) for variant in command.request)
-            kind = "" if capped else "refused-speedless"
+        if limits.speed is not None and not kind:
+            kind = _exceeds_speed(table, command)
         if limits.joints is not None and any(limits.joints) and not kind:
             kind = _leaves_joints(table, command, limits.joints)
         if kind:
             found[command.name] = error_text(kind, command=command.name, edition=table.edition)
     return found
+
+
+def _exceeds_speed(table: Table, command: Command) -> str:
+    """Return the kind of refusal of a command that could exceed a speed; empty if it cannot."""
+    effect = effect_of(command)
+    if isinstance(effect, Stores) and _HIGHEST_SPEED in effect.values.values():
+        return "refused-scale"
+    if not moves_arm(table, command):
+        return ""
+    capped = all(any(map(is_speed, variant.fields)) for variant in command.request)
+    return "" if capped else "refused-speedless"
 
 
 def _leaves_joints(table: Table, command: Command, joints: Ranges) -> str:

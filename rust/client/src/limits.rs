@@ -16,6 +16,8 @@ pub type Range = (f64, f64);
 const AXES: [&str; 3] = ["x", "y", "z"];
 /// States that decide what coordinates mean.
 const FRAMES: [&str; 4] = ["tool", "world", "reference_frame", "end_type"];
+/// The state that decides what a speed in percent means.
+const HIGHEST_SPEED: &str = "max_speed";
 
 /// The highest speed of an arm, and where its end may go. Requests that could exceed a limit are
 /// refused before a byte is sent, and so are persistent writes. Nothing limits `stop`.
@@ -126,14 +128,16 @@ impl Limits {
             return None;
         }
         let moves = moves_arm(edition, command);
-        let mut states = command.stores.iter();
+        let stores = |states: &[&str]| command.stores.iter().any(|state| states.contains(&&**state));
         let is_capped = |variant: &Vec<Field>| variant.iter().any(is_speed);
         let kind = if command.safety == Safety::Persistent {
             "refused-lasting"
-        } else if far && states.any(|state| FRAMES.contains(&&**state)) {
+        } else if far && stores(&FRAMES) {
             "refused-frame"
         } else if far && moves && command.role != "coordinate targets" {
             "refused-blind"
+        } else if fast && stores(&[HIGHEST_SPEED]) {
+            "refused-scale"
         } else if fast && moves && !command.request.iter().all(is_capped) {
             "refused-speedless"
         } else {
