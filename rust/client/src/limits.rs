@@ -128,7 +128,12 @@ impl Limits {
             return None;
         }
         let moves = moves_arm(edition, command);
-        let stores = |states: &[&str]| command.stores.iter().any(|state| states.contains(&&**state));
+        let stores = |states: &[&str]| {
+            command
+                .stores
+                .iter()
+                .any(|state| states.contains(&&**state))
+        };
         let is_capped = |variant: &Vec<Field>| variant.iter().any(is_speed);
         let kind = if command.safety == Safety::Persistent {
             "refused-lasting"

@@ -173,9 +173,14 @@ fn wrong_argument_and_exceeded_limit_are_refused_before_a_byte_is_sent() {
 fn highest_speed_is_not_set_within_a_speed() {
     let port = Memory::default();
     let slow = options(|options| options.limits.speed = Some(1.0));
-    let outcome = Pro630::over(port.clone(), slow).unwrap().call_named("set_max_speed", &[]);
+    let outcome = Pro630::over(port.clone(), slow)
+        .unwrap()
+        .call_named("set_max_speed", &[]);
     let message = outcome.unwrap_err().to_string();
-    assert!(message.contains("it changes what a percentage means"), "{message}");
+    assert!(
+        message.contains("it changes what a percentage means"),
+        "{message}"
+    );
     assert!(port.written().is_empty());
 }
 
