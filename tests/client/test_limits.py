@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from both_ways import openers
-from cobotwire import Limits, UsageError, editions
+from cobotwire import Limits, ReplyTimeout, UsageError, editions
 from cobotwire import codec as codecs
 from cobotwire.client.opening import settings as client_settings
 from cobotwire.editions.mercury_a1 import MercuryA1
@@ -23,6 +23,7 @@ from cobotwire.protocol.effects import Moves, effect_of
 from cobotwire.protocol.limits import limited
 from cobotwire.protocol.refusals import refusals
 from cobotwire.protocol.roles import moves_arm
+from cobotwire.protocol.table import Table
 from recording_transport import RecordingTransport
 from strategies import codec_of, legal_values, variants_of
 
@@ -207,9 +208,79 @@ SPEED = st.none() | st.floats(1, 100)
 SIDE = st.none() | st.tuples(st.floats(-600, 0), st.floats(0, 600))
 
 
+class FrameTransport(RecordingTransport):
+    """Replies to the queries of the frame, which it does not record, and to nothing else."""
+
+    def __init__(self, table: Table, frame: int = 0, end: int = 0) -> None:
+        super().__init__()
+        codec, self._incoming = codecs.load(table, "reference"), b""
+        self._replies = {
+            codec.encode(name, "request", ()): codec.encode(name, "reply", (value,))
+            for name, value in (("get_reference_frame", frame), ("get_end_type", end))
+        }
+
+    def write(self, data: bytes) -> None:
+        if (reply := self._replies.get(data)) is None:
+            super().write(data)
+        else:
+            self._incoming += reply
+
+    def read(self, timeout: float) -> bytes:
+        data, self._incoming = self._incoming, b""
+        return data
+
+
+@pytest.mark.parametrize("way", ["blocking", "asyncio"])
+@pytest.mark.parametrize(("frame", "end"), [(1, 0), (0, 1)])
+def test_workspace_refuses_coordinates_in_another_frame(way: str, frame: int, end: int) -> None:
+    transport = FrameTransport(TABLE, frame, end)
+    query = "get_reference_frame" if frame else "get_end_type"
+    with openers(MyCobot280, AsyncMyCobot280)[way](transport, limits=Limits(workspace=BOX)) as arm:
+        calls: list[Callable[[], Any]] = [
+            lambda: arm.send_coords([100, 0, 100, 0, 0, 0], 20, 1),
+            lambda: arm.send_coord(3, 100, 20),
+            lambda: arm.move_coords([100, 0, 100, 0, 0, 0], 20),
+        ]
+        for call in calls:
+            with pytest.raises(UsageError, match=rf"{query}\(\) reports 1"):
+                call()
+        assert transport.written == b""
+        arm.send_angles([0] * 6, 20)
+        arm.stop()
+    assert transport.written.count(b"\xfe\xfe") == 2
+
+
+def test_workspace_refuses_coordinates_if_the_frame_is_not_reported() -> None:
+    transport = RecordingTransport()
+    arm = MyCobot280(transport, limits=Limits(workspace=BOX), timeout=0.05)
+    with pytest.raises(ReplyTimeout, match="get_reference_frame"):
+        arm.send_coords([100, 0, 100, 0, 0, 0], 20, 1)
+    assert transport.written.startswith(bytes.fromhex("FE FE 02 86 FA"))
+    assert bytes([0xFE, 0xFE, 0x10, 0x25]) not in transport.written
+
+
+def test_target_is_not_sent_after_a_stop_that_comes_while_the_frame_is_read() -> None:
+    class Stopping(FrameTransport):
+        stopped = False
+
+        def read(self, timeout: float) -> bytes:
+            if self._incoming and not self.stopped:
+                self.stopped = True
+                arm.stop()
+            return super().read(timeout)
+
+    transport = Stopping(TABLE)
+    arm = MyCobot280(transport, limits=Limits(workspace=BOX))
+    with pytest.raises(UsageError, match="the arm was stopped while its frame was read"):
+        arm.send_coords([100, 0, 100, 0, 0, 0], 20, 1)
+    assert transport.written == bytes.fromhex("FE FE 02 29 FA")
+    arm.send_coords([100, 0, 100, 0, 0, 0], 20, 1)
+    assert transport.written.count(b"\xfe\xfe") == 2
+
+
 @pytest.mark.parametrize("way", ["blocking", "asyncio"])
 def test_speed_and_workspace_are_checked_before_a_byte_is_sent(way: str) -> None:
-    transport = RecordingTransport()
+    transport = FrameTransport(TABLE)
     limits = Limits(speed=30, workspace=BOX)
     with openers(MyCobot280, AsyncMyCobot280)[way](transport, limits=limits) as arm:
         refused: list[tuple[Callable[[], Any], str]] = [
@@ -260,7 +331,7 @@ def test_wrong_speed_or_workspace_is_named(limits: Limits, argument: str) -> Non
 
 
 def test_edition_without_geometry_refuses_targets_of_joints_in_a_workspace() -> None:
-    transport = RecordingTransport()
+    transport = FrameTransport(EVERY["mercury_a1"])
     arm = MercuryA1(transport, limits=Limits(workspace=BOX))
     with pytest.raises(UsageError, match="edition mercury_a1 states no geometry"):
         arm.send_angles([0, 0, 0, -90, 0, 90, 0], 20)

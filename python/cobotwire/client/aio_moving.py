@@ -162,7 +162,7 @@ class AsyncMovingClient(AsyncFollowingClient):
     ) -> None:
         check_seconds("timeout", timeout)
         # Encoded first, so that a bad target is reported as an argument of the command.
-        encoded = self._encoder.encode_request(request)
+        encoded = await self._encoded(request)
         goal = (
             motion.goal_of(self.table, target, roles.kinds_of(self.table)[label]) if wait else None
         )

@@ -26,12 +26,13 @@ from cobotwire.client.opening import (
 from cobotwire.client.streaming import Stream
 from cobotwire.client.traffic import TrafficListener
 from cobotwire.protocol.addresses import find_address, named_address
-from cobotwire.protocol.errors import CaptureError, CobotwireError
+from cobotwire.protocol.error_texts import error_text
+from cobotwire.protocol.errors import CaptureError, CobotwireError, UsageError
 from cobotwire.protocol.limits import Limits
 from cobotwire.protocol.messages import Request, Result
 from cobotwire.protocol.table import Table
-from cobotwire.session import Exchange, RetryPolicy
-from cobotwire.session.request import check_acknowledged
+from cobotwire.session import Exchange, RetryPolicy, Traffic
+from cobotwire.session.request import EncodedRequest, check_acknowledged, request_of
 from cobotwire.transport import Transport
 
 
@@ -344,12 +345,45 @@ class Client:
 
         ``longest`` limits the time for the reply, ``deadline`` that for the whole call, in seconds.
         """
-        encoded = self._encoder.encode_request(request)
+        encoded = self._encoded(request)
         wait, retry = self._settings.timeout, self._settings.retry
         if longest is not None:
             wait = self._settings.at_most(longest, encoded.command)
         done = self._connection.request(encoded, retry, wait, deadline)
         return request.result_of(self._connection.firmware.result(done))
+
+    def _encoded(self, request: Request[Any]) -> EncodedRequest:
+        """Validate and encode a request; check the frame that its coordinates are in.
+
+        Raises:
+            UsageError: also: the frame is not that of the limits, or the arm was stopped meanwhile.
+        """
+        encoded = self._encoder.encode_request(request)
+        queries = self._encoder.queries_before(encoded)
+        if not queries:
+            return encoded
+        name = encoded.command.name
+        stops: list[EncodedRequest] = []
+
+        def watch(traffic: Traffic) -> None:
+            sent = request_of(traffic.data, codec) if traffic.direction == "sent" else None
+            if sent is not None and sent.command.role in ("stop", "halt"):
+                stops.append(sent)
+
+        codec = self._settings.codec
+        remove = self._connection.listeners.add(watch)
+        try:
+            for query in queries:
+                if frame := self._call(query.request_type()):
+                    text = error_text("other-frame", command=name, query=query.name, frame=frame)
+                    raise UsageError("limits.workspace", frame, message=text)
+        finally:
+            remove()
+        if stops:
+            message = error_text("stopped-before", command=name)
+            raise UsageError("command", name, message=message)
+        self._encoder.accept_frame()
+        return encoded
 
     def _send(
         self,
@@ -363,7 +397,7 @@ class Client:
         """
         if ack_within is not None:
             check_seconds("ack_within", ack_within)
-        encoded = self._encoder.encode_request(request)
+        encoded = self._encoded(request)
         if ack_within is not None:
             check_acknowledged(encoded)
         self._connection.send(encoded, ack_within, deadline)

@@ -10,7 +10,7 @@ from cobotwire.kinematics import coords_of, geometry_of
 from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.limits import AXES, Limits
-from cobotwire.protocol.refusals import refusals
+from cobotwire.protocol.refusals import frame_queries, refusals
 from cobotwire.protocol.roles import row_index
 from cobotwire.protocol.table import Address, Command
 from cobotwire.session.request import EncodedRequest, RequestEncoder
@@ -25,6 +25,8 @@ class LimitedEncoder(RequestEncoder):
         self._refused = refusals(codec.table, limits)
         self._workspace = limits.workspace
         self._geometry = geometry_of(codec.table)
+        # Those that are not answered yet. Nobody may change the frame through this client.
+        self._frame_queries = () if self._workspace is None else frame_queries(codec.table)
 
     def encode(
         self,
@@ -42,6 +44,15 @@ class LimitedEncoder(RequestEncoder):
         if self._workspace is not None and encoded.command.role == "joint targets":
             self._check_end(encoded)
         return encoded
+
+    def queries_before(self, request: EncodedRequest) -> Sequence[Command]:
+        """Return the queries of the frame before the first target in coordinates."""
+        targets = ("coordinate targets", "coordinate target")
+        return self._frame_queries if request.command.role in targets else ()
+
+    def accept_frame(self) -> None:
+        """Record that the arm has reported 0 to each of these queries."""
+        self._frame_queries = ()
 
     def _command(self, name: str) -> tuple[Command, bool]:
         if why := self._refused.get(name):

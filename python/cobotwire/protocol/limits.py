@@ -42,7 +42,11 @@ class Limits(NamedTuple):
         wider: whether ranges may exceed the edition's, up to what the wire can carry.
         speed: the highest speed in percent.
         workspace: ranges for x, y and z in millimetres: where the end of the arm may be sent, also
-            by angles of joints. The path to a target is not checked.
+            by angles of joints. The path to a target is not checked. Coordinates are those of the
+            flange in the frame of the base. Before its first target in coordinates, a client
+            queries the reference frame and the end type of the arm (``get_reference_frame``,
+            ``get_end_type``), and refuses the target if another program has changed one. A change
+            that another program makes later is not noticed, nor one that the edition cannot query.
     """
 
     joints: Ranges | None = None

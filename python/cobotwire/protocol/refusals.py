@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cobotwire.protocol.effects import Moves, Stores, effect_of
+from cobotwire.protocol.effects import Moves, Reports, Stores, effect_of
 from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.limits import Limits, Ranges, is_speed
 from cobotwire.protocol.roles import moves_arm
@@ -10,6 +10,8 @@ from cobotwire.protocol.table import Command, Table
 
 # The states that decide what coordinates mean: the point of the arm, and the frame of reference.
 _FRAMES = frozenset({"tool", "world", "reference_frame", "end_type"})
+# Those that choose a frame; 0 is the frame of the base, and the flange as the point of the arm.
+_CHOSEN_FRAMES = frozenset({"reference_frame", "end_type"})
 # The state that decides what a speed in percent means.
 _HIGHEST_SPEED = "max_speed"
 
@@ -38,6 +40,16 @@ def refusals(table: Table, limits: Limits) -> dict[str, str]:
         if kind:
             found[command.name] = error_text(kind, command=command.name, edition=table.edition)
     return found
+
+
+def frame_queries(table: Table) -> tuple[Command, ...]:
+    """Return the queries that report 0 if coordinates are those of the flange from the base."""
+    found = []
+    for command in table.commands:
+        effect = effect_of(command)
+        if isinstance(effect, Reports) and not _CHOSEN_FRAMES.isdisjoint(effect.values.values()):
+            found.append(command)
+    return tuple(found)
 
 
 def _exceeds_speed(table: Table, command: Command) -> str:

@@ -82,6 +82,13 @@ class RequestEncoder:
         except UsageError as error:
             raise _in_units_of_caller(error, command, request) from None
 
+    def queries_before(self, request: EncodedRequest) -> Sequence[Command]:
+        """Return the queries of which each must report 0 before the request may be sent."""
+        return ()
+
+    def accept_frame(self) -> None:
+        """Record that each of these queries has reported 0."""
+
     def encode(
         self,
         name: str,
