@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
 from typing import Any
 
+import numpy as np
 import pytest
 
-from cobotwire import MyCobot, UsageError
+from cobotwire import MyCobot, MyCobot280, UsageError
 from cobotwire.client import Client
 from cobotwire.transport import Transport
 from recording_transport import RecordingTransport
@@ -35,6 +38,9 @@ BAD: list[tuple[str, Callable[[Any], Any], str, str]] = [
     ("joint 7", lambda arm: arm.get_encoder(7), "joint", "1..6"),
     ("joint 1.5", lambda arm: arm.send_angle(1.5, 0, 20), "joint", "a whole number"),
     ("joint True", lambda arm: arm.send_angle(True, 0, 20), "joint", "a whole number"),
+    ("NumPy's boolean", lambda arm: arm.send_angle(1, np.bool_(True), 20), "angle", "a number"),
+    ("NumPy's, in a row", lambda arm: arm.send_angles([np.True_] * 6, 20), "angles.j1", ".."),
+    ("an array of one", lambda arm: arm.send_angle(1, np.array(True), 20), "angle", "a number"),
     ("speed 101", lambda arm: arm.send_angles(SIX, 101), "speed", "0..100 percent"),
     ("speed -1", lambda arm: arm.set_speed(-1), "speed", "0..100 percent"),
     ("an unknown enum", lambda arm: arm.set_reference_frame(2), "frame", "BASE (0), WORLD (1)"),
@@ -52,6 +58,27 @@ BAD: list[tuple[str, Callable[[Any], Any], str, str]] = [
         "3300",
     ),
 ]
+
+
+@pytest.mark.parametrize("codec", ["reference", "native"])
+@pytest.mark.parametrize(
+    "angle", [np.float32(0.5), np.float16(0.5), np.float64(0.5), Fraction(1, 2), Decimal("0.5")]
+)
+def test_radians_of_any_number_type_become_degrees(codec: Any, angle: Any) -> None:
+    transport = RecordingTransport()
+    MyCobot280(transport, codec=codec).send_radians([angle, 0, 0, 0, 0, 0], 10)
+    assert transport.written[4:6] == round(100 * math.degrees(0.5)).to_bytes(2, "big")
+
+
+@pytest.mark.parametrize("codec", ["reference", "native"])
+@pytest.mark.parametrize(
+    "angle", [True, np.True_, 10**400, math.nan, "1", None, np.array([1.0, 2.0])]
+)
+def test_radians_that_are_no_number_are_rejected(codec: Any, angle: Any) -> None:
+    transport = RecordingTransport()
+    with pytest.raises(UsageError, match=r"radians"):
+        MyCobot280(transport, codec=codec).send_radians([angle, 0, 0, 0, 0, 0], 10)
+    assert transport.written == b""
 
 
 @pytest.mark.parametrize("codec", ["reference", "native"])

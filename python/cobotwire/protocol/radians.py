@@ -6,18 +6,20 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
+from cobotwire.protocol.number_types import is_number
+
 
 def to_degrees(radians: Any) -> Any:
     """Convert a number or a row of numbers to degrees; return anything else unchanged.
 
     The codec rejects values that are not numbers, and its message shows them as they were given.
     """
-    if _is_number(radians):
-        return math.degrees(radians)
+    if is_number(radians):
+        return _degrees(radians)
     if isinstance(radians, Iterable) and not isinstance(
         radians, (str, bytes, bytearray, dict, set)
     ):
-        return [math.degrees(value) if _is_number(value) else value for value in radians]
+        return [_degrees(value) if is_number(value) else value for value in radians]
     return radians
 
 
@@ -28,5 +30,8 @@ def to_radians(degrees: Any) -> Any:
     return math.radians(degrees)
 
 
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+def _degrees(radians: Any) -> Any:
+    try:
+        return math.degrees(radians)
+    except (OverflowError, TypeError, ValueError):
+        return radians

@@ -128,7 +128,22 @@ impl Object<'_> {
     fn is_number(&self, names: &Names) -> Result<bool, Unread<PyErr>> {
         // A subclass of float, such as NumPy's, needs no slow check of its attributes.
         let float = self.0.is_instance_of::<PyFloat>();
-        Ok(!self.is(&names.bool)? && (float || self.is(names.float_like.as_any())?))
+        if self.is(&names.bool)? {
+            return Ok(false);
+        }
+        Ok(float || (self.is(names.float_like.as_any())? && !self.is_numpy_bool()?))
+    }
+
+    /// Return whether this is a boolean of NumPy, which has a float value, but is no `bool`.
+    fn is_numpy_bool(&self) -> Result<bool, Unread<PyErr>> {
+        let kind_of = || -> PyResult<bool> {
+            let Some(dtype) = self.0.getattr_opt("dtype")? else {
+                return Ok(false);
+            };
+            let kind = dtype.getattr_opt("kind")?;
+            kind.map_or(Ok(false), |kind| kind.eq("b"))
+        };
+        kind_of().map_err(Unread::Foreign)
     }
 
     /// Convert an exact `int`, if it fits.

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Iterator, Sequence
-from typing import Any, SupportsFloat, SupportsIndex
+from typing import Any
 
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.fields import pack_numbers
+from cobotwire.protocol.number_types import is_number
 from cobotwire.protocol.rejection import (
     ValueFault,
     reject_address,
@@ -23,9 +24,6 @@ from cobotwire.protocol.table import Case, Command, Direction, Field, FrameForma
 
 # Types that are iterable but never meant as a row of numbers.
 NOT_SEQUENCES = (str, bytes, bytearray, dict, set, frozenset)
-# Types with an index or a float value. Comparing the first two is fast; comparing types of other
-# libraries, such as NumPy, is not.
-NUMBERS = (float, int, SupportsFloat, SupportsIndex)
 
 
 class _Rejected(Exception):
@@ -169,7 +167,7 @@ def _integer(field: Field, number: Number, value: Any) -> int:
 
 
 def _real(number: Number, value: Any) -> int:
-    if isinstance(value, bool) or not isinstance(value, NUMBERS):
+    if not is_number(value):
         raise _Rejected("type")
     try:
         real = float(value)
