@@ -18,7 +18,8 @@ from hypothesis import strategies as st
 
 from cobotwire import Limits, UsageError, editions
 from cobotwire import codec as codecs
-from cobotwire.editions.mycobot280 import TABLE, AsyncMyCobot280
+from cobotwire.editions import mercury_a1, mycobot280
+from cobotwire.editions.mycobot280 import TABLE
 from cobotwire.session import Traffic
 from cobotwire.session.request import RequestEncoder
 from cobotwire.simulator import SimulatedArm, TcpServer
@@ -37,7 +38,11 @@ MOTION = {"allow_motion": True, "limits": Limits(speed=100)}
 Call = Callable[..., Coroutine[Any, Any, Any]]
 
 
-def talk(work: Callable[[Any, Call], Coroutine[Any, Any, None]], **options: Any) -> list[bytes]:
+def talk(
+    work: Callable[[Any, Call], Coroutine[Any, Any, None]],
+    edition: Any = mycobot280,
+    **options: Any,
+) -> list[bytes]:
     """Run a client, a server and an arm in this process; return the requests that arrived."""
     sent: list[bytes] = []
 
@@ -46,9 +51,9 @@ def talk(work: Callable[[Any, Call], Coroutine[Any, Any, None]], **options: Any)
             sent.append(traffic.data)
 
     async def main() -> None:
-        with TcpServer(SimulatedArm(TABLE, powered=True).connect) as line:
-            chosen = Options(line.url, "mycobot280", **options)
-            arm = AsyncMyCobot280(line.url, limits=chosen.limits, trace=note)
+        with TcpServer(SimulatedArm(edition.TABLE, powered=True).connect) as line:
+            chosen = Options(line.url, edition.TABLE.edition, **options)
+            arm = edition.ASYNC_CLIENT(line.url, limits=chosen.limits, trace=note)
             async with arm, ArmServer(arm, chosen) as served, mcp.Client(served.server) as client:
 
                 async def call(name: str, **arguments: Any) -> Any:
@@ -182,6 +187,27 @@ def test_motion_of_a_silent_client_is_stopped_once() -> None:
         SEND_ANGLES,
         STOP[3],
     ]
+
+
+@pytest.mark.parametrize("name", ["move_round", "resume"])
+def test_motion_without_arguments_is_stopped_when_its_client_is_silent(name: str) -> None:
+    async def work(client: Any, call: Call) -> None:
+        assert await call(name) == {"result": "sent"}
+        await asyncio.sleep(0.4)
+        assert await call("pause") == {"result": "sent"}
+        await asyncio.sleep(0.2)
+
+    sent = talk(work, silence=0.1, choice="all", allow_motion=True)
+    assert [each[3] for each in sent] == [STOP[3]]
+
+
+@pytest.mark.parametrize("name", ["drag_teach_execute", "over_limit_return_zero", "resume"])
+def test_motion_without_arguments_is_stopped_when_its_client_leaves(name: str) -> None:
+    async def work(client: Any, call: Call) -> None:
+        assert "result" in await call(name)
+
+    sent = talk(work, mercury_a1, choice="all", allow_motion=True)
+    assert [each[3] for each in sent] == [STOP[3]]
 
 
 def test_configuration_of_the_page_serves_an_arm_over_stdio() -> None:

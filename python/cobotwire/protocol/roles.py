@@ -153,6 +153,14 @@ def starts_motion(table: Table, command: Command) -> bool:
     return back is None or table.command(back.query).role != "paused"
 
 
+def may_move(table: Table, command: Command) -> bool:
+    """Return whether the arm or its gripper may move after a command of the class motion.
+
+    These are the commands that start a motion, and the one that resumes a paused motion.
+    """
+    return starts_motion(table, command) or command == table.find_setter("paused", 0)
+
+
 def moves_arm(table: Table, command: Command) -> bool:
     """Return whether a command may set joints in motion; one for the gripper does not."""
     return starts_motion(table, command) and not is_of_gripper(table, command)

@@ -20,6 +20,7 @@ from cobotwire.client.aio import AsyncClient
 from cobotwire.client.aio_dead_man import AsyncDeadMan
 from cobotwire.protocol.errors import CobotwireError, UsageError, did_you_mean
 from cobotwire.protocol.limits import Limits
+from cobotwire.protocol.roles import may_move
 
 Context = ServerRequestContext[Any]
 INSTRUCTIONS = (
@@ -152,7 +153,7 @@ class ArmServer:
                 self._dead_man.rest()
             return spec.result(None)
         positional, named = spec.arguments(arguments)
-        self._note_message(spec.command.starts_motion)
+        self._note_message(may_move(self._arm.table, spec.command))
         return spec.result(await getattr(self._arm, name)(*positional, **named))
 
     def _unknown(self, name: str) -> str:
