@@ -8,6 +8,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Coroutine
+from itertools import permutations
 from pathlib import Path
 from typing import Any
 
@@ -94,6 +95,16 @@ def _has_groups(spec: ToolSpec) -> bool:
     """Return whether an argument has another size than its schema says, or several ranges."""
     fields = [field for variant in spec.command.request for field in variant.fields]
     return any(f.many or f.selector >= 0 or f.kind in ("bytes", "text") for f in fields)
+
+
+@pytest.mark.parametrize("name", ["move_angles", "move_coords"])
+def test_order_of_json_keys_does_not_change_the_arguments_of_a_waited_motion(name: str) -> None:
+    spec = tools(TABLE, Limits(), True)[name]
+    values = {"angles": [0] * 6, "coords": [100, 0, 200, 0, 0, 0], "speed": 2, "mode": 1}
+    given = [(each, values[each]) for each in spec.schema["properties"]]
+    expected = [value for _, value in given], {}
+    for order in permutations(given):
+        assert spec.arguments(dict(order)) == expected
 
 
 JSON = st.recursive(

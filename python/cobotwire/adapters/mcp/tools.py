@@ -56,8 +56,12 @@ class ToolSpec(NamedTuple):
         parsed = parse(self.command, words)
         if self.name not in WAITED:
             return [], parsed
-        row = parsed.pop(_row(self.command))
-        return [row, *parsed.values()], {}
+        # The methods take the row first and the rest in the order of the request's class; the keys
+        # of a JSON object have no order.
+        kind, row = self.command.request_type, _row(self.command)
+        names: tuple[str, ...] = kind.__match_args__
+        others = [parsed.get(each, vars(kind).get(each)) for each in names if each != row]
+        return [parsed[row], *others], {}
 
     def result(self, value: Any) -> dict[str, Any]:
         """Return a result as a JSON object, with the unit of each number that has one."""
