@@ -123,21 +123,33 @@ def test_wrong_option_is_refused_before_the_port_is_opened(option: Any, text: st
         )
 
 
-@pytest.mark.parametrize("error", [None, KeyboardInterrupt()])
+@pytest.mark.parametrize("end", ["return", "error", "handled error"])
 @pytest.mark.parametrize("on_error", ["stop", "leave"])
-def test_disconnect_after_an_error_stops_the_arm(on_error: str, error: Any) -> None:
+def test_disconnect_stops_the_arm_once_however_the_program_ends(on_error: str, end: str) -> None:
     bench = Bench()
     robot = bench.connect(on_error=on_error, silence=3000.0)
     robot.send_action(POSE)
     with suppress(KeyboardInterrupt):
         try:
-            if error:
-                raise error
+            if end != "return":
+                raise KeyboardInterrupt
+        except KeyboardInterrupt:
+            # lerobot-teleoperate handles Ctrl-C before it disconnects the arm.
+            if end == "error":
+                raise
         finally:
             robot.disconnect()
-    assert bench.requests[1:] == (["stop"] if error and on_error == "stop" else [])
+    assert bench.requests[1:] == (["stop"] if on_error == "stop" else [])
     with pytest.raises(DeviceNotConnectedError, match="not connected: call connect"):
         robot.send_action(POSE)
+
+
+def test_disconnect_sends_nothing_if_no_action_was_sent_since_connect() -> None:
+    bench = Bench()
+    robot = bench.connect(silence=3000.0)
+    robot.get_observation()
+    robot.disconnect()
+    assert bench.requests == []
 
 
 def test_arm_is_stopped_when_no_action_comes() -> None:

@@ -97,7 +97,7 @@ class ArmDevice:
             self._opened = opened.pop_all()
 
     def disconnect(self) -> None:
-        """Close everything; after an error, ``on_error`` decides whether the arm is stopped."""
+        """Close everything; a robot is stopped first if ``on_error`` is stop."""
         _ = self.arm
         # LeRobot calls this in `finally`.
         error = sys.exception()

@@ -33,7 +33,7 @@ class CobotwireRobotConfig(ArmConfig, RobotConfig):
     workspace: list[tuple[float, float] | None] | None = None
     # Seconds without an action after which the arm is stopped.
     silence: float = 1.0
-    # stop: stop the arm if an error or Ctrl-C disconnects it; leave: let it end its motion.
+    # stop: stop the arm when it is disconnected; leave: let it end its motion.
     on_error: str = "stop"
     # Cameras by name, as in LeRobot's own robots.
     cameras: dict[str, CameraConfig] = field(default_factory=dict)
@@ -85,8 +85,19 @@ class CobotwireRobot(ArmDevice, Robot):
 
     def connect(self, calibrate: bool = True) -> None:
         """Connect, and start the dead-man switch, which stops the arm if no action comes."""
+        self._acted = False
         super().connect(calibrate)
+        self._opened.push(self._stop)
         self._dead_man = self._opened.enter_context(DeadMan(self.arm, self.config.silence))
+
+    def _stop(self, kind: object, error: BaseException | None, traceback: object) -> None:
+        """Stop the arm if no error is known; after an error, the client stops it.
+
+        A program of LeRobot may handle Ctrl-C before it disconnects the arm, so an end without an
+        error can be an interruption, too.
+        """
+        if error is None and self._acted and self.config.on_error == "stop":
+            self.arm._stop_all()
 
     def get_observation(self) -> dict[str, Any]:
         """Return where the arm is, and what the cameras see."""
@@ -104,6 +115,7 @@ class CobotwireRobot(ArmDevice, Robot):
         sent, speed = self._targets.clip(action), self.config.max_speed
         joints, gripper = self.positions.joints, self._targets.gripper
         self._dead_man.alive()
+        self._acted = True
         try:
             self.arm.move_angles([sent[name] for name in joints], speed, wait=False)
             self._is_inside = True
