@@ -119,6 +119,46 @@ def test_program_imports_from_its_folder_and_its_threads_keep_the_arm_open(
     assert arm.received.count("get_angles") == 1
 
 
+FAILING = {
+    "arm out of scope": "move()\nraise RuntimeError\n",
+    "exit code": "mc = move()\nsys.exit('failed')\n",
+    "thread": (
+        "def work():\n    mc = move()\n    raise RuntimeError\n"
+        "thread = threading.Thread(target=work)\nthread.start()\nthread.join()\n"
+    ),
+}
+MOVING = (
+    "import sys, threading\n"
+    "from pymycobot import MyCobot280\n"
+    "def move():\n"
+    "    mc = MyCobot280(sys.argv[1])\n"
+    "    mc.send_angles([90, 0, 0, 0, 0, 0], 1)\n"
+    "    return mc\n"
+)
+
+
+@pytest.mark.parametrize("end", FAILING)
+def test_arm_is_stopped_once_however_its_program_fails(
+    served: tuple[Served, str], tmp_path: Path, end: str
+) -> None:
+    arm, port = served
+    script = tmp_path / "failing.py"
+    script.write_text(MOVING + FAILING[end])
+    assert run_program("run", script, port).returncode == 1
+    assert arm.received.count("send_angles") == arm.received.count("stop") == 1
+
+
+def test_port_of_an_arm_out_of_scope_can_be_opened_again(
+    served: tuple[Served, str], tmp_path: Path
+) -> None:
+    arm, port = served
+    script = tmp_path / "again.py"
+    script.write_text(MOVING + "move()\nmove()\nsys.exit(0)\n")
+    ended = run_program("run", script, port)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert (arm.received.count("send_angles"), arm.received.count("stop")) == (2, 0)
+
+
 def test_missing_program_and_missing_module_are_named(tmp_path: Path) -> None:
     ended = run_program("run", tmp_path / "none.py")
     assert ended.returncode == 2

@@ -75,8 +75,9 @@ def run_program(
 ) -> int:
     """Run a program of the maker's library on our clients.
 
-    Its arms are closed when it ends. If an exception or Ctrl-C ends it, each arm is first sent
-    ``stop`` once.
+    Its arms are closed when it and its threads have ended. If an exception, Ctrl-C or an exit code
+    other than 0 ends it, or an exception one of its threads, each arm is first sent ``stop`` once,
+    also if the program no longer refers to it.
 
     Args:
         path: the program's file.
@@ -84,7 +85,8 @@ def run_program(
         errors: what a call that fails does, unless the program itself chooses that.
 
     Returns:
-        The exit code of the program; 1 if an exception ended it; 130 after Ctrl-C.
+        The exit code of the program; 1 if an exception ended it or one of its threads; 130 after
+        Ctrl-C.
 
     Raises:
         UsageError: there is no such file.
@@ -107,17 +109,42 @@ def run_program(
 def _run(path: str) -> int:
     error: BaseException | None = None
     before = set(threading.enumerate())
+    with policy.running(), _errors_of_threads() as failed:
+        try:
+            try:
+                runpy.run_path(path, run_name="__main__")
+                _join(set(threading.enumerate()) - before)
+                code = 0
+            except SystemExit as ended:
+                code = _exit_code(ended)
+                error = ended if code else None
+            if not code and failed:
+                code, error = 1, failed[0]
+            return code
+        except BaseException as raised:
+            error = raised
+            return _report(raised, path)
+        finally:
+            _leave(error)
+
+
+@contextmanager
+def _errors_of_threads() -> Iterator[list[BaseException]]:
+    """Yield the errors that end threads of the program; Python prints them as always."""
+    errors: list[BaseException] = []
+    show = threading.excepthook
+
+    def note(failed: threading.ExceptHookArgs) -> None:
+        # SystemExit is a regular end of a thread.
+        if not issubclass(failed.exc_type, SystemExit):
+            errors.append(failed.exc_value or failed.exc_type())
+        show(failed)
+
+    threading.excepthook = note
     try:
-        runpy.run_path(path, run_name="__main__")
-        _join(set(threading.enumerate()) - before)
-    except SystemExit as ended:
-        return _exit_code(ended)
-    except BaseException as raised:
-        error = raised
-        return _report(raised, path)
+        yield errors
     finally:
-        _leave(error)
-    return 0
+        threading.excepthook = show
 
 
 def _join(threads: set[threading.Thread]) -> None:

@@ -59,7 +59,7 @@ class CompatibleClient:
     def _open_socket(self, host: str, port: int, debug: bool, errors: OnFailure | None) -> None:
         self._open(partial(self.NATIVE, f"socket://{host}:{port}"), debug, errors)
 
-    def _open(self, open_arm: Callable[[], Client], debug: bool, errors: OnFailure | None) -> None:
+    def _open(self, open_arm: partial[Client], debug: bool, errors: OnFailure | None) -> None:
         if errors not in (None, "raise", "return"):
             raise UsageError("errors", errors, "'raise' or 'return'")
         if debug:
@@ -73,13 +73,16 @@ class CompatibleClient:
 
     def open(self) -> None:
         """Open the port again after ``close``; the constructor has opened it."""
+        port = self._open_arm.args[0]
+        policy.free(port)
         self.arm: Any = self._open_arm()
         self._is_open = True
-        policy.opened(self.arm)
+        policy.opened(self.arm, self, port)
 
     def close(self) -> None:
         """Close the port. Nothing is sent to the arm."""
         self._is_open = False
+        policy.closed(self.arm)
         self.arm.close()
 
     def _send_acked(
