@@ -9,8 +9,9 @@ from typing import Any
 import pytest
 
 import cobotwire.pymycobot as layer
-from cobotwire.protocol.errors import MotionTimeout, ReplyTimeout, UsageError
+from cobotwire.protocol.errors import MotionTimeout, ProtocolError, ReplyTimeout, UsageError
 from cobotwire.protocol.roles import row_index
+from cobotwire.simulator import SimulatedArm
 from layer.arms import made
 from memory_peer import MemoryPeer
 
@@ -68,6 +69,33 @@ def test_late_motion_is_stopped_once_with_both_error_policies(name: str, errors:
     with pytest.raises(MotionTimeout) if errors == "raise" else nullcontext():
         found.sync_send_angles(*address, target, 1, timeout=0.3)
     assert (received.count(motion.name), received.count(stop.name)) == (1, 1)
+
+
+class Illegal:
+    """A robot that replies 7 to the query for the end of a motion, and to no other request."""
+
+    wait = None
+
+    def __init__(self, arm: SimulatedArm) -> None:
+        self._arm, self._table = arm.connect(), arm.table
+
+    def receive(self, data: bytes) -> bytes:
+        query, has_sum = self._table.in_role("reached").id, bool(self._table.addresses)
+        no, illegal = (bytes((query, n, query + n if has_sum else 0xFA)) for n in (0, 7))
+        return self._arm.receive(data).replace(no, illegal)
+
+    def flush(self) -> bytes:
+        return self._arm.flush()
+
+
+@pytest.mark.parametrize("errors", ["raise", "return"])
+@pytest.mark.parametrize("name", ["MyCobot280", "MyCobot280Socket", "MyPalletizer260", "MyBuddy"])
+def test_illegal_reply_during_a_motion_is_a_late_motion(name: str, errors: Any) -> None:
+    found, arm = made(name, errors=errors, peer=Illegal)
+    address = (1,) if arm.table.addresses else ()
+    with pytest.raises(ProtocolError) if errors == "raise" else nullcontext():
+        result = found.sync_send_angles(*address, [20] * arm.table.joints, 1, timeout=5)
+        assert result == getattr(found, "LATE", found)
 
 
 def test_closed_arm_opens_again() -> None:

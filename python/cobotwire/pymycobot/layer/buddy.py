@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import Any, Self
 
-from cobotwire.protocol.errors import MotionTimeout, UsageError
+from cobotwire.protocol.errors import MotionTimeout, ProtocolError, UsageError
 from cobotwire.pymycobot.layer import results
 from cobotwire.pymycobot.layer.client import CompatibleClient
 from cobotwire.pymycobot.layer.naming import naming
@@ -78,6 +78,8 @@ class Limbs(CompatibleClient):
         Raises:
             MotionTimeout: the arm does not arrive in time; it is then sent ``stop``. With
                 ``errors="return"`` nothing is raised.
+            ProtocolError: the arm refuses the motion, or a reply is not allowed; otherwise as
+                MotionTimeout.
         """
         return self._reached(self.arm.at(id).move_angles, degrees, speed, timeout=timeout)
 
@@ -95,7 +97,7 @@ class Limbs(CompatibleClient):
     def _reached(self, move: Any, *arguments: Any, timeout: float) -> Self:
         try:
             move(*arguments, timeout=timeout)
-        except MotionTimeout:
+        except (MotionTimeout, ProtocolError):
             if self._raises:
                 raise
         return self

@@ -199,11 +199,12 @@ class Reporting(ClosedLoop):
         Raises:
             MotionTimeout: the arm does not arrive in time; it is then sent ``stop``. With
                 ``errors="return"`` the result is then 0, as it is in the library.
-            RequestRefused: the motion failed; with ``errors="return"`` the result is 0.
+            ProtocolError: the motion failed, or a reply is not allowed; with ``errors="return"``
+                the result is 0.
         """
         try:
             self.arm.move_angles(degrees, speed, timeout=timeout)
-        except (MotionTimeout, RequestRefused):
+        except (MotionTimeout, ProtocolError):
             if self._raises:
                 raise
             return 0

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import Any, ClassVar, Self
 
-from cobotwire.protocol.errors import MotionTimeout, UsageError
+from cobotwire.protocol.errors import MotionTimeout, ProtocolError, UsageError
 from cobotwire.pymycobot.layer.client import DONE, CompatibleClient
 from cobotwire.pymycobot.layer.naming import naming
 
@@ -17,7 +17,7 @@ HOME_SPEED = 10
 class Waiting(CompatibleClient):
     """Waits for a time, or for the end of a motion."""
 
-    # The result of a motion that did not end in time, if errors are returned.
+    # The result of a motion that failed or did not end in time, if errors are returned.
     LATE: ClassVar[int] = DONE
 
     def wait(self, t: float) -> Self:
@@ -33,13 +33,15 @@ class Waiting(CompatibleClient):
             MotionTimeout: the arm does not arrive in time; it is then sent ``stop``. With
                 ``errors="return"`` the call returns what the library returns: 1, or 0 in its older
                 classes.
+            ProtocolError: the arm refuses the motion, or a reply is not allowed; otherwise as
+                MotionTimeout.
         """
         return self._reached(self.arm.move_angles, degrees, speed, timeout=timeout)
 
     def _reached(self, move: Any, *arguments: Any, timeout: float) -> int:
         try:
             move(*arguments, timeout=timeout)
-        except MotionTimeout:
+        except (MotionTimeout, ProtocolError):
             if self._raises:
                 raise
             return self.LATE
