@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from functools import partial
 from typing import Any
 
@@ -15,6 +16,7 @@ from cobotwire.protocol.errors import (
     RequestRefused,
     UsageError,
 )
+from cobotwire.session import RequestReceived
 from cobotwire.simulator import PtyServer, SimulatedArm
 from layer.arms import made
 from memory_peer import MemoryPeer
@@ -101,6 +103,54 @@ def test_lost_end_of_a_motion_raises_reply_timeout() -> None:
     arm, _ = made("Mercury", "mercury_a1", errors="return", peer=NeverReports)
     assert arm.send_angles(HOME, 50) == -1
     assert arm.get_angles() == pytest.approx(HOME, abs=0.1)
+
+
+@pytest.mark.parametrize("method", ["send_angles", "sync_send_angles"])
+def test_ctrl_c_that_a_program_handles_stops_the_motion(method: str) -> None:
+    received: list[Any] = []
+
+    def note(event: Any, _: bytes) -> None:
+        if isinstance(event, RequestReceived):
+            received.append(event.message.command.name)
+
+    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    try:
+        with PtyServer(SimulatedArm(mercury_a1.TABLE, powered=True, on_event=note)) as server:
+            arm = layer.Mercury(server.url)
+            signal.setitimer(signal.ITIMER_REAL, 0.3)
+            with pytest.raises(KeyboardInterrupt):
+                getattr(arm, method)(HOME, 1)
+            arm.arm.listen(0.2)  # the arm takes some time to stop
+            assert arm.is_moving() == 0
+            assert (received.count("send_angles"), received.count("stop")) == (1, 1)
+            arm.close()
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+class Silent(NeverReports):
+    """A robot that never reports the end of a motion, and does not reply to ``is_moving``."""
+
+    def receive(self, data: bytes) -> bytes:
+        reply = super().receive(data)
+        return b"" if data[3] == mercury_a1.TABLE.in_role("moving").id else reply
+
+
+def test_arm_that_may_move_after_an_error_is_stopped_and_a_wrong_argument_sends_nothing() -> None:
+    received: list[Any] = []
+    arm, _ = made(
+        "Mercury",
+        "mercury_a1",
+        peer=Silent,
+        on_event=lambda event, _: received.append(event.message.command.name),
+    )
+    with pytest.raises(UsageError):
+        arm.send_angles(HOME, 101)
+    assert "stop" not in received
+    with pytest.raises(ReplyTimeout):
+        arm.send_angles(HOME, 1)
+    assert received.count("stop") == 1
 
 
 def test_motions_do_not_wait_if_their_ends_are_not_reported() -> None:

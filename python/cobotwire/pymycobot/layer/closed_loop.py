@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from typing import Any, ClassVar
 
 from cobotwire.protocol.errors import (
@@ -41,8 +41,9 @@ class ClosedLoop(CompatibleClient):
     """A robot that accepts a motion at once, and reports its end.
 
     A call that starts a motion waits for its end and returns its status, which is 0. If the motion
-    fails, the call raises RequestRefused; with ``errors="return"`` it returns the status. With
-    ``_async=True`` it returns 1 at once.
+    fails, the call raises RequestRefused; with ``errors="return"`` it returns the status. If an
+    error or Ctrl-C ends the wait, the arm is sent ``stop``, unless it stands still. With
+    ``_async=True`` the call returns 1 at once.
     """
 
     QUIET: ClassVar[int | None] = DONE
@@ -59,10 +60,13 @@ class ClosedLoop(CompatibleClient):
         command = self.arm.table.in_role("motion ended")
         with self.arm.events(command.reply_type, timeout=QUERY_SECONDS) as ends:
             try:
-                # The acceptance may be lost; only the report of the end counts.
-                with suppress(ReplyTimeout):
-                    call(*arguments, ack_within=self.ACK_SECONDS)
-                end = self._end_of(call.__name__, ends)
+                with self._stopping():
+                    # The acceptance may be lost; only the report of the end counts.
+                    with suppress(ReplyTimeout):
+                        call(*arguments, ack_within=self.ACK_SECONDS)
+                    end = self._end_of(call.__name__, ends)
+                if isinstance(end, ReplyTimeout):
+                    raise end
                 refusal = command.refusal(end.fields)
                 if refusal is not None and self._raises:
                     field, status = refusal
@@ -71,12 +75,25 @@ class ClosedLoop(CompatibleClient):
                 return self._failed()
         return int(end.status)
 
+    @contextmanager
+    def _stopping(self) -> Iterator[None]:
+        """Stop the arm if an error or Ctrl-C ends the wait for the end of a motion."""
+        try:
+            yield
+        except UsageError:
+            # Nothing was sent.
+            raise
+        except BaseException as error:
+            # The motion may still report its end.
+            self._others = True
+            self.arm._stop_for(error)
+            raise
+
     def _end_of(self, name: str, ends: Any) -> Any:
-        """Return the event of the motion's end.
+        """Return the event of the motion's end, or a ReplyTimeout if the arm does not report it.
 
         Raises:
-            ReplyTimeout: the arm stands still without having reported the end, or moves for longer
-                than five minutes.
+            ReplyTimeout: the arm still moves after five minutes.
         """
         still, queries = 0, 0
         while still < STILL_TIMES and queries < MOST_TIMES:
@@ -91,7 +108,11 @@ class ClosedLoop(CompatibleClient):
                 still = 0 if self.arm.is_moving() else still + 1
         reports = "is_moving() is False" if still else "is_moving() is True"
         request = f"{name}() at the end of its motion"
-        raise ReplyTimeout(name, queries * QUERY_SECONDS, (reports,), 1, request)
+        error = ReplyTimeout(name, queries * QUERY_SECONDS, (reports,), 1, request)
+        if still < STILL_TIMES:
+            raise error
+        # The arm stands still: there is no motion to stop.
+        return error
 
     def _not_ready(self, name: str, why: str) -> int:
         try:

@@ -187,9 +187,10 @@ class MethodsOfPro450(ClosedLoop, Gripper450):
         """Move along a trajectory for identification, and wait until the arm stands still."""
         result = self._send_acked(self.arm.fourier_trajectories, trajectory, quiet=_async)
         still = 0
-        while not _async and result == 1 and still < STILL_TIMES:
-            still = 0 if self.arm.is_moving() else still + 1
-            self.arm.listen(TRAJECTORY_SECONDS)
+        with self._stopping():
+            while not _async and result == 1 and still < STILL_TIMES:
+                still = 0 if self.arm.is_moving() else still + 1
+                self.arm.listen(TRAJECTORY_SECONDS)
         return result if _async or result != 1 else 0
 
     @naming(data="can_data")
