@@ -102,7 +102,7 @@ def test_order_of_json_keys_does_not_change_the_arguments_of_a_waited_motion(nam
     spec = tools(TABLE, Limits(), True)[name]
     values = {"angles": [0] * 6, "coords": [100, 0, 200, 0, 0, 0], "speed": 2, "mode": 1}
     given = [(each, values[each]) for each in spec.schema["properties"]]
-    expected = [value for _, value in given], {}
+    expected: Any = ([value for _, value in given], {})
     for order in permutations(given):
         assert spec.arguments(dict(order)) == expected
 
