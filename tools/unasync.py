@@ -163,7 +163,6 @@ RULES = [
     (r"\bclient\.aio_events\b", "client.event_streams"),
     (r"\bclient\.aio\b", "client.blocking"),
     (r"\bimport asyncio\n", ""),
-    (r"\basyncio\.CancelledError\b", "KeyboardInterrupt"),
 ]
 
 

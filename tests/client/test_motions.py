@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import _thread
 import asyncio
+import signal
 import threading
 import time
 from collections.abc import Iterator
@@ -12,7 +13,7 @@ from typing import Any
 import pytest
 
 from both_ways import Opener, openers
-from cobotwire import MotionTimeout, ReplyTimeout, UsageError
+from cobotwire import MotionTimeout, ProtocolError, ReplyTimeout, UsageError
 from cobotwire.editions.mycobot280 import TABLE, AsyncMyCobot280, MyCobot280, TargetKind
 from cobotwire.session import Traffic
 from cobotwire.session.motion import Listen, Outcome, Query, goal_of, until_reached
@@ -209,6 +210,53 @@ def test_motion_that_timed_out_is_stopped_once(simulated: SimulatedArm, way: str
     with PtyServer(simulated) as server, pytest.raises(MotionTimeout):
         move_too_slowly(OPENERS[way], server.url, trace=traffic.append)
     assert sent(traffic).count(STOP) == 1
+
+
+class WithIllegalReply(SimulatedArm):
+    """An arm that replies 7 instead of 0 to ``is_in_position``."""
+
+    def receive(self, data: bytes) -> bytes:
+        no, illegal = bytes.fromhex("FE FE 03 2A 00 FA"), bytes.fromhex("FE FE 03 2A 07 FA")
+        return super().receive(data).replace(no, illegal)
+
+
+@pytest.mark.parametrize("way", OPENERS)
+@pytest.mark.parametrize("call", ["move_angles", "wait_until_reached"])
+def test_illegal_reply_during_a_waited_motion_stops_the_arm(way: str, call: str) -> None:
+    traffic: list[Traffic] = []
+    target = [150, 0, 0, 0, 0, 0]
+    with (
+        PtyServer(WithIllegalReply(TABLE, powered=True)) as server,
+        OPENERS[way](server.url, trace=traffic.append) as arm,
+    ):
+        arguments = [target, 10] if call == "move_angles" else [target]
+        arm.send_angles(target, 10)
+        with pytest.raises(ProtocolError, match="reached is 7"):
+            getattr(arm, call)(*arguments)
+        assert sent(traffic)[-1] == STOP
+        time.sleep(0.2)  # the arm takes some time to stop
+        assert arm.is_moving() is False
+
+
+@pytest.mark.parametrize("error", [SystemExit, ZeroDivisionError])
+def test_exception_of_a_signal_handler_stops_the_arm(
+    simulated: SimulatedArm, error: type[BaseException]
+) -> None:
+    def fail(*_: object) -> None:
+        raise error
+
+    traffic: list[Traffic] = []
+    before = signal.signal(signal.SIGALRM, fail)
+    try:
+        with PtyServer(simulated) as server, MyCobot280(server.url, trace=traffic.append) as arm:
+            arm.power_on(ack_within=1.0)
+            signal.setitimer(signal.ITIMER_REAL, 0.2)
+            with pytest.raises(error):
+                arm.move_angles([150, 0, 0, 0, 0, 0], 10)
+            assert sent(traffic)[-1] == STOP
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
 
 
 @pytest.mark.parametrize("way", OPENERS)

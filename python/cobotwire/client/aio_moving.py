@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import Any
@@ -107,7 +106,7 @@ class AsyncMovingClient(AsyncFollowingClient):
         with self._end_signs() as signs:
             try:
                 await self._wait(goal, timeout, signs)
-            except asyncio.CancelledError as error:
+            except BaseException as error:
                 await self._stop_for(error)
                 raise
 
@@ -171,7 +170,7 @@ class AsyncMovingClient(AsyncFollowingClient):
                 await self._send_motion(encoded, wait and signs.queue is not None)
                 if goal is not None:
                     await self._wait(goal, timeout, signs)
-            except asyncio.CancelledError as error:
+            except BaseException as error:
                 await self._stop_for(error)
                 raise
 

@@ -107,7 +107,7 @@ class MovingClient(FollowingClient):
         with self._end_signs() as signs:
             try:
                 self._wait(goal, timeout, signs)
-            except KeyboardInterrupt as error:
+            except BaseException as error:
                 self._stop_for(error)
                 raise
 
@@ -171,7 +171,7 @@ class MovingClient(FollowingClient):
                 self._send_motion(encoded, wait and signs.queue is not None)
                 if goal is not None:
                     self._wait(goal, timeout, signs)
-            except KeyboardInterrupt as error:
+            except BaseException as error:
                 self._stop_for(error)
                 raise
 
