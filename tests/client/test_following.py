@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from cobotwire import FollowFailed, FollowReport, Limits, PathLimits, UsageError
+from cobotwire import FollowFailed, FollowReport, Limits, PathLimits, UsageError, editions
 from cobotwire.editions.clients import EDITIONS
 from cobotwire.editions.mycobot280 import TABLE, AsyncMyCobot280, MyCobot280
 from cobotwire.kinematics import coords_of, geometry_of, jerk_limited
@@ -257,17 +257,75 @@ def test_asyncio_client_follows_paths_and_asynchronous_iterators_and_stops_once_
         assert report.sent > 10
 
 
-def test_stop_by_another_thread_ends_follow() -> None:
-    arm = MyCobot280(Watched().transport)
+@pytest.mark.parametrize(
+    ("edition", "command", "arguments"),
+    [
+        ("mycobot280", "stop", []),
+        ("mycobot280", "jog_stop", []),
+        ("mycobot280", "clear_queue", []),
+        ("mycobot280", "pause", []),
+        ("mycobot280", "power_off", []),
+        ("mycobot280", "release_all_servos", []),
+        ("mycobot280", "joint_brake", [1]),
+        ("mercury_a1", "stop", [1]),
+        ("mercury_a1", "power_off", []),
+        ("pro450", "stop", [1]),
+    ],
+)
+def test_command_that_ends_motions_ends_follow_in_each_of_its_variants(
+    edition: str, command: str, arguments: list[int]
+) -> None:
+    found, traffic = editions.load(edition), list[Traffic]()
+    setpoint = found.TABLE.in_role("joint targets").id
+    clock = Watched(found.TABLE)
+    arm: Any = found.CLIENT(clock.transport, trace=traffic.append)
+    first, *others = clock.simulated.state.angles.position(0)
 
     def targets() -> Sequence[float]:
-        if arm.get_angles().j1 > 5:
-            arm.stop()
-        return [60, 0, 0, 0, 0, 0]
+        if clock() > 5:
+            raise StopIteration
+        if arm.get_angles()[0] > first + 5:
+            getattr(arm, command)(*arguments)
+            traffic.clear()
+        return [first + 60, *others]
 
     with arm, pytest.raises(FollowFailed, match="the arm was stopped meanwhile") as caught:
         arm.follow(targets)
     assert caught.value.report.ended == "stopped"
+    assert f": {command}() was sent" in str(caught.value)
+    assert setpoint not in [frame[3] for frame in frames(traffic)]
+
+
+def test_stop_of_another_address_ends_follow() -> None:
+    found = editions.load("mybuddy")
+    clock = Watched(found.TABLE)
+    arm: Any = found.CLIENT(clock.transport, address="left")
+
+    def targets() -> Sequence[float]:
+        if clock() > 5:
+            raise StopIteration
+        if arm.get_angles()[0] > 5:
+            arm.at("right").stop()
+        return [60, 0, 0, 0, 0, 0]
+
+    with arm, pytest.raises(FollowFailed, match=r"the arm was stopped meanwhile: stop\(\)"):
+        arm.follow(targets)
+
+
+def test_commands_of_the_gripper_and_of_settings_do_not_end_follow() -> None:
+    found = editions.load("mycobot320")
+    arm: Any = found.CLIENT(Watched(found.TABLE).transport)
+
+    def targets() -> Sequence[float]:
+        if arm.get_angles()[0] > 5:
+            arm.set_pro_gripper_stop(14)
+            arm.set_color(1, 2, 3)
+            arm.power_on()
+            raise StopIteration
+        return [10, 0, 0, 0, 0, 0]
+
+    with arm:
+        assert arm.follow(targets).ended == "end"
 
 
 @pytest.mark.parametrize(("argument", "value"), [("limits", Limits(speed=3)), ("rate", 4.9)])

@@ -11,7 +11,6 @@ from cobotwire.client.aio import AsyncClient
 from cobotwire.client.aio_target_sources import AsyncTargets, TaskMailbox  # unasync: off
 from cobotwire.client.opening import check_seconds
 from cobotwire.client.target_sources import Targets, is_path, source_of
-from cobotwire.protocol.addresses import addresses_of
 from cobotwire.protocol.errors import CobotwireError, ProtocolError, ReplyTimeout, UsageError
 from cobotwire.protocol.lazy import import_aside
 from cobotwire.session import Traffic
@@ -122,12 +121,13 @@ class AsyncFollowingClient(AsyncClient):
         return source_of(path)
 
     async def _run_follow(self, job: Follow) -> None:
-        stops = self._stop_frames()
+        decode = self._settings.codec.decode
 
         def watch(traffic: Traffic) -> None:
-            # A dead man's switch, or another part of the program, has sent a stop.
-            if traffic.data in stops and traffic.direction == "sent":
-                job.stopped = True
+            # A dead man's switch, or another part of the program, may have stopped the arm.
+            if traffic.direction == "sent":
+                with suppress(ProtocolError):
+                    job.note_sent(decode("request", traffic.data).command)
 
         remove = self._connection.listeners.add(watch)
         steps = job.steps(self._connection.now())
@@ -140,14 +140,6 @@ class AsyncFollowingClient(AsyncClient):
             return
         finally:
             remove()
-
-    def _stop_frames(self) -> set[bytes]:
-        """Return the frames that stop the arm, for each address."""
-        stop = self.table.find_role("stop")
-        if stop is None:
-            return set()
-        encoders = map(self._settings.encoder, addresses_of(self.table) or (None,))
-        return {each.encode_request(stop.request_type()).frame for each in encoders}
 
     async def _take_step(self, step: Pause | Query | Send) -> Outcome:
         now, result = self._connection.now, None

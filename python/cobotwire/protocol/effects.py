@@ -16,6 +16,7 @@ from typing import Any, Literal, NamedTuple
 
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.robot import real
+from cobotwire.protocol.roles import is_of_gripper
 from cobotwire.protocol.table import Command, Field, Table
 
 # The state of an arm that says whether a new target replaces the present one.
@@ -218,6 +219,28 @@ def fresh_mode(table: Table) -> tuple[Command, str, Command | None]:
         "so the arm would queue the targets of a path"
     )
     raise UsageError("edition", table.edition, message=message)
+
+
+def ends_motion(table: Table, command: Command) -> bool:
+    """Return whether a command is meant to end or interrupt a motion of the arm, or may do so.
+
+    It stops or pauses the arm, discards targets, or has the safety class power and may take power
+    from a joint. No command for the gripper ends a motion of the arm.
+    """
+    if is_of_gripper(table, command):
+        return False
+    if command.role in ("stop", "halt"):
+        return True
+    cases = list(each_case(effect_of(command)))
+    if any(isinstance(each, Does) and each.what != "resume" for each in cases):
+        return True
+    return command.safety == "power" and not (cases and all(map(_holds_joints, cases)))
+
+
+def _holds_joints(effect: Effect) -> bool:
+    """Return whether an effect leaves power on the joints."""
+    values = effect.values if isinstance(effect, Sets) else {}
+    return values.get("held", values.get("powered")) is True
 
 
 def empty_value(field: Field) -> int:

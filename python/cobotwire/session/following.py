@@ -20,13 +20,13 @@ from cobotwire.kinematics import geometry_of
 from cobotwire.kinematics.coordinates import indices_of
 from cobotwire.kinematics.curve import Point
 from cobotwire.kinematics.jerk_limited import Bounds, load_ruckig
-from cobotwire.protocol.effects import fresh_mode
+from cobotwire.protocol.effects import ends_motion, fresh_mode
 from cobotwire.protocol.errors import FollowFailed, UsageError
 from cobotwire.protocol.fields import named_fields
 from cobotwire.protocol.limits import joint_limits
 from cobotwire.protocol.messages import Request
 from cobotwire.protocol.roles import row_index, targets_request
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.table import Command, Table
 from cobotwire.session.motion import TOLERANCES, Outcome, Query
 from cobotwire.session.paths import (
     Ended,
@@ -76,7 +76,6 @@ class Follow:
 
     Attributes:
         moving: whether a setpoint was sent, so that an error has to stop the arm.
-        stopped: whether another part of the program has sent stop.
         restore: the request that restores the arm's mode; None: nothing to restore.
     """
 
@@ -124,13 +123,24 @@ class Follow:
         self._interpolate: Interpolation = self._lines or evenly
         self._source = path if isinstance(path, Source) else None
         self._waypoints = [] if isinstance(path, Source) else self._checked_path(path)
-        self.moving = self.stopped = False
+        self.moving = False
+        # The command by which another part of the program ended the motion.
+        self._stopped_by = ""
+        self._ending = {each.name for each in table.commands if ends_motion(table, each)}
         self.restore: EncodedRequest | None = None
         self._sent = self._dropped = self._superseded = 0
         self._deviation: float | None = None
         self._began = self._sent_at = self._now = 0.0
         self._period = 0.0
         self._setpoint: Point = ()
+
+    def note_sent(self, command: Command) -> None:
+        """Take note of a command that was sent to any address; one that ends motions ends this one.
+
+        It may be called from any thread.
+        """
+        if command.name in self._ending:
+            self._stopped_by = command.name
 
     def report(self, ended: Ended = "end") -> FollowReport:
         """Return the report on the motion so far."""
@@ -283,8 +293,9 @@ class Follow:
             self._deviation = max(away, self._deviation or 0.0)
 
     def _check_stopped(self) -> None:
-        if self.stopped:
-            self._fail("stopped", "the arm was stopped meanwhile")
+        if self._stopped_by:
+            why = f"the arm was stopped meanwhile: {self._stopped_by}() was sent"
+            self._fail("stopped", why)
 
     def _arrive(self, end: Point) -> Steps:
         """Wait until the joints are at the end of the path."""

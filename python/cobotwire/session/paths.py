@@ -43,7 +43,7 @@ class FollowReport(NamedTuple):
 
     Attributes:
         ended: why it ended: at the end of the path or source; because the source was silent, the
-            program stalled, another part of the program sent stop, or the arm stopped short of the
+            program stalled, another part of the program stopped the arm, or it stopped short of the
             end.
         rate: setpoints a second that were sent.
         sent: how many setpoints were sent.
