@@ -254,9 +254,14 @@ class AsyncClient:
             error.add_note(str(failed) if incomplete else f"close() raised {failed!r}")
 
     async def _stop_all_for(self, error: BaseException) -> None:
-        """Send ``stop`` once for an error to each address that was used."""
+        """Send ``stop`` once for an error to each address that was used, and nothing after it."""
         interrupt: BaseException | None = None
         clients: list[AsyncClient] = [*self._views.values()] or [self]
+        try:
+            if self._stops:
+                self._connection.send_only_stops()
+        except BaseException as raised:
+            interrupt = raised
         for client in clients:
             try:
                 await client._stop_for(error)

@@ -156,6 +156,10 @@ class AsyncConnection:
             steps.check()
             await steps.wait(min(left, LISTEN_SECONDS))
 
+    def send_only_stops(self) -> None:
+        """Send only ``stop`` and ``halt`` from now on; other calls of all tasks get a LinkError."""
+        self._exchange.send_only_stops(self.url)
+
     def close(self) -> None:
         """Close the transport; calls that wait get a LinkError. Closing twice is harmless.
 

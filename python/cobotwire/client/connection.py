@@ -134,6 +134,15 @@ class Connection:
                 # In real time, not by the transport's clock: another thread is waited for.
                 time.sleep(min(left, CHECK_SECONDS))
 
+    def send_only_stops(self) -> None:
+        """Send only ``stop`` and ``halt`` from now on; other calls of all threads get a LinkError.
+
+        A request that another thread is writing now is written before the next stop.
+        """
+        with self._steps.state:
+            self._exchange.send_only_stops(self.url)
+        self._steps.leading.wake_followers()
+
     def close(self) -> None:
         """Close the transport. Nothing is sent to the arm. Closing twice is harmless.
 

@@ -60,6 +60,8 @@ from cobotwire.session.request import EncodedRequest, as_call, request_of
 
 # For how long received bytes are read before a request is sent, if they do not end.
 DRAIN_SECONDS = 0.05
+# Why a request is not sent after an error has ended the client's block.
+ENDING = "an error ended the program's with block, so only stop is sent any more"
 
 
 @once_per_table
@@ -89,12 +91,30 @@ class Exchange:
         self._last: PendingRequest | None = None
         # Whether the line took no bytes when the next request was to be sent.
         self._line_is_full = False
+        # The error of every request that is not sent any more; None: all requests are sent.
+        self._ending: LinkError | None = None
 
     # What callers want.
 
     def enqueue(self, pending: PendingRequest) -> None:
-        """Queue a request. Its caller already holds it, so that an interrupt cannot lose it."""
-        self._queue.append(pending)
+        """Queue a request. Its caller already holds it, so that an interrupt cannot lose it.
+
+        It fails at once if the exchange sends only ``stop`` and ``halt``.
+        """
+        if self._ending is not None:
+            pending.fail(self._ending)
+        else:
+            self._queue.append(pending)
+
+    def send_only_stops(self, url: str) -> None:
+        """Send only commands with the role ``stop`` or ``halt`` from now on.
+
+        Other requests fail with a LinkError for ``url``, also those that wait for their turn. The
+        request that waits for its reply goes on.
+        """
+        self._ending = LinkError(url, ENDING)
+        for pending in self._queued():
+            pending.fail(self._ending)
 
     def send_one_way(
         self,
@@ -107,7 +127,12 @@ class Exchange:
 
         The second result is None unless the edition acknowledges the request and its caller waits
         for that: at most ``ack_within`` seconds, and not after ``ends_by``.
+
+        Raises:
+            LinkError: only ``stop`` and ``halt`` are sent any more.
         """
+        if self._ending is not None and request.command.role not in ("stop", "halt"):
+            raise LinkError(self._ending.url, self._ending.detail)
         offset = self._framer.fed
         self._echo.sent_one_way(request.frame, offset)
         self.alignment.sent(request.frame)
