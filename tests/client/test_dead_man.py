@@ -15,6 +15,7 @@ from cobotwire.client.dead_man import Silence
 from cobotwire.editions.myarm_c650 import MyArmC650
 from cobotwire.editions.mybuddy import MyBuddy
 from cobotwire.editions.mycobot280 import AsyncMyCobot280, MyCobot280
+from cobotwire.session import Traffic
 from cobotwire.simulator import SteppedClock
 from recording_transport import RecordingTransport
 
@@ -124,6 +125,64 @@ def test_stop_that_could_not_be_sent_is_reported_by_the_next_sign_of_life() -> N
             dead_man.alive()
         dead_man.alive()
         dead_man.rest()
+
+
+def test_listener_that_raises_does_not_end_the_thread_and_no_address_is_left_out() -> None:
+    transport = SteppedTransport()
+
+    def fail(traffic: Traffic) -> None:
+        raise ZeroDivisionError("a listener")
+
+    stops = bytes.fromhex("FE FE 01 02 29 29 FE FE 02 02 29 29")
+    with MyBuddy(transport, address=MyBuddy.LEFT) as arm, DeadMan(arm, 1.0) as dead_man:
+        arm.right  # noqa: B018  (used)
+        remove = arm.add_traffic_listener(fail)
+        for count in (1, 2):
+            transport.clock.sleep(2)
+            assert _stops(dead_man, count)
+            assert transport.written == stops * count
+            with pytest.raises(ZeroDivisionError, match="a listener"):
+                dead_man.alive()
+        remove()
+        dead_man.rest()
+
+
+def test_unexpected_error_of_a_stop_does_not_end_the_task() -> None:
+    transport = RecordingTransport()
+
+    async def fail() -> None:
+        raise ZeroDivisionError("a listener")
+
+    async def main() -> None:
+        async with AsyncMyCobot280(transport) as arm, AsyncDeadMan(arm, 0.05) as dead_man:
+            stop_all = arm._stop_all
+            arm._stop_all = fail  # type: ignore[method-assign]
+            await asyncio.sleep(0.2)
+            assert dead_man.stops == 1
+            arm._stop_all = stop_all  # type: ignore[method-assign]
+            with pytest.raises(ZeroDivisionError, match="a listener"):
+                dead_man.alive()
+            await asyncio.sleep(0.2)
+            assert dead_man.stops == 2
+
+    asyncio.run(main())
+    assert transport.written == STOP
+
+
+def test_listener_that_raises_does_not_keep_a_call_waiting() -> None:
+    errors = []
+
+    def fail(traffic: Traffic) -> None:
+        raise ZeroDivisionError("a listener")
+
+    async def main() -> None:
+        loop = asyncio.get_running_loop()
+        loop.set_exception_handler(lambda _, context: errors.append(context["exception"]))
+        async with asyncio.timeout(2), AsyncMyCobot280(RecordingTransport(), trace=fail) as arm:
+            await arm.stop()
+
+    asyncio.run(main())
+    assert [type(error) for error in errors] == [ZeroDivisionError]
 
 
 def test_seconds_and_the_edition_are_checked_first() -> None:

@@ -302,12 +302,18 @@ class AsyncClient:
 
         Raises:
             UsageError: the edition has no stop.
-            LinkError: the transport is gone.
+            LinkError: the transport is gone. Any error is raised when all addresses were tried.
         """
         stop = self.table.in_role("stop").request_type()
         clients: list[AsyncClient] = [*self._views.values()] or [self]
+        error: Exception | None = None
         for client in clients:
-            await client._send(stop, deadline=inf)
+            try:
+                await client._send(stop, deadline=inf)
+            except Exception as raised:
+                error = error or raised
+        if error is not None:
+            raise error
 
     async def _stop_again(self, stop: Request[None]) -> bool:
         """Send ``stop`` after the first attempt was interrupted; return whether it was sent."""

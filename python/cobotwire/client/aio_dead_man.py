@@ -9,7 +9,6 @@ from typing import Self
 
 from cobotwire.client.aio import AsyncClient
 from cobotwire.client.dead_man import Silence
-from cobotwire.protocol.errors import CobotwireError
 
 
 class AsyncDeadMan:
@@ -31,7 +30,7 @@ class AsyncDeadMan:
         self._arm, self._now, self.stops = arm, arm._connection.now, 0
         self._silence = Silence(seconds)
         self._fed = asyncio.Event()
-        self._error: CobotwireError | None = None
+        self._error: Exception | None = None
         self._task: asyncio.Task[None] | None = None
 
     async def __aenter__(self) -> Self:
@@ -49,7 +48,8 @@ class AsyncDeadMan:
         """Note a sign of life.
 
         Raises:
-            LinkError: the last stop could not be sent.
+            LinkError: the last stop could not be sent. Any other error of sending it, such as one
+                of a traffic listener, is raised, too.
         """
         self._silence.alive(self._now())
         self._fed.set()
@@ -73,6 +73,7 @@ class AsyncDeadMan:
                 self._silence.rest()
                 try:
                     await self._arm._stop_all()
-                except CobotwireError as error:
+                except Exception as error:
+                    # Also one of a traffic listener: the task must live to send the next stop.
                     self._error = error
                 self.stops += 1

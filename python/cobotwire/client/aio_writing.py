@@ -125,22 +125,36 @@ class AsyncWriter:
         """Note the end of a write that was not taken at once, and start the next one."""
         self._current = None
         ended: list[tuple[Write, LinkError | None]] = [(write, error)]
-        if error is None:
-            self._written(write)
-        else:
-            error.written = self._alignment.cut(write.align, write.request, error.written)
-            if not self._withdrawing:
-                ended += [(each, _unsent(error)) for each in self._waiting if not each.stops]
-                self._waiting = deque(each for each in self._waiting if each.stops)
-        while self._waiting and self._current is None:
-            following = self._waiting.popleft()
+        try:
+            if error is None:
+                self._written(write)
+            else:
+                error.written = self._alignment.cut(write.align, write.request, error.written)
+                if not self._withdrawing:
+                    ended += [(each, _unsent(error)) for each in self._waiting if not each.stops]
+                    self._waiting = deque(each for each in self._waiting if each.stops)
+        finally:
+            # A traffic listener may have raised; no caller must wait for ever.
             try:
-                if self._start(following):
-                    ended.append((following, None))
-            except LinkError as failed:
-                ended.append((following, failed))
-        for each, why in ended:
-            each.done(why)
+                self._start_waiting(ended)
+            finally:
+                for each, why in ended:
+                    each.done(why)
+
+    def _start_waiting(self, ended: list[tuple[Write, LinkError | None]]) -> None:
+        """Start the writes that wait, until the transport keeps one; add those that ended."""
+        if not self._waiting or self._current is not None:
+            return
+        following = self._waiting.popleft()
+        why: LinkError | None = None
+        try:
+            self._start(following)
+        except LinkError as failed:
+            why = failed
+        finally:
+            if following is not self._current:
+                ended.append((following, why))
+            self._start_waiting(ended)
 
     def withdraw(self) -> None:
         """Do not send the request that was begun last, if no byte of it was taken."""

@@ -325,12 +325,18 @@ class Client:
 
         Raises:
             UsageError: the edition has no stop.
-            LinkError: the transport is gone.
+            LinkError: the transport is gone. Any error is raised when all addresses were tried.
         """
         stop = self.table.in_role("stop").request_type()
         clients: list[Client] = [*self._views.values()] or [self]
+        error: Exception | None = None
         for client in clients:
-            client._send(stop, deadline=inf)
+            try:
+                client._send(stop, deadline=inf)
+            except Exception as raised:
+                error = error or raised
+        if error is not None:
+            raise error
 
     def _stop_again(self, stop: Request[None]) -> bool:
         """Send ``stop`` after the first attempt was interrupted; return whether it was sent."""

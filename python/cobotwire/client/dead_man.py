@@ -13,7 +13,6 @@ from typing import Self
 from cobotwire.client.blocking import Client
 from cobotwire.client.leading import CHECK_SECONDS
 from cobotwire.client.opening import check_seconds
-from cobotwire.protocol.errors import CobotwireError
 
 # A stop that waits for a full line must not keep the program from ending.
 END_SECONDS = 2.0
@@ -65,7 +64,7 @@ class DeadMan:
         self._silence = Silence(seconds)
         self._changed = threading.Condition()
         self._ended = False
-        self._error: CobotwireError | None = None
+        self._error: Exception | None = None
         self._thread = threading.Thread(target=self._watch, name="cobotwire-dead-man", daemon=True)
 
     def __enter__(self) -> Self:
@@ -83,7 +82,8 @@ class DeadMan:
         """Note a sign of life; any thread may do so.
 
         Raises:
-            LinkError: the last stop could not be sent.
+            LinkError: the last stop could not be sent. Any other error of sending it, such as one
+                of a traffic listener, is raised, too.
         """
         with self._changed:
             self._silence.alive(self._connection.now())
@@ -101,7 +101,8 @@ class DeadMan:
         while self._wait():
             try:
                 self._arm._stop_all()
-            except CobotwireError as error:
+            except Exception as error:
+                # Also one of a traffic listener: the thread must live to send the next stop.
                 self._error = error
             self.stops += 1
 
