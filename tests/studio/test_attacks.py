@@ -209,9 +209,9 @@ def test_one_page_at_a_time_may_send(studio: Studio) -> None:
 
 
 def test_motion_needs_the_switch_of_the_page_as_well(studio: Studio) -> None:
-    power = {"command": "power_on", "arguments": {}}
     with watching(studio) as feed:
         page = feed.state("hello")["page"]
+        power = {"command": "power_on", "arguments": {}, "stops": feed.states["stops"]}
         assert studio.post("/api/motion", {"on": True}, page).status == 403
         studio.post("/api/control", {"take": True}, page)
         refused = studio.post("/api/send", power, page)
@@ -221,6 +221,37 @@ def test_motion_needs_the_switch_of_the_page_as_well(studio: Studio) -> None:
         studio.post("/api/control", {"take": False}, page)
         studio.post("/api/control", {"take": True}, page)
         assert studio.post("/api/send", power, page).status == 403
+
+
+def test_motion_requested_before_a_stop_is_refused_when_it_arrives_later() -> None:
+    arm = SimulatedArm(TABLE, powered=True)
+    move = {"command": "send_angles", "arguments": {"angles": "90,0,0,0,0,0", "speed": "20"}}
+    with (
+        TcpServer(arm.connect) as server,
+        running(server.url, "--allow-motion", "--rate", "0") as studio,
+        watching(studio) as feed,
+        watching(studio) as other,
+    ):
+        page, stops = feed.state("hello")["page"], feed.states["stops"]
+        studio.post("/api/control", {"take": True}, page)
+        studio.post("/api/motion", {"on": True}, page)
+        other.wish("stop", number=1)
+        assert feed.state("stops") == stops + 1, "pages are told"
+        refused = studio.post("/api/send", move | {"stops": stops}, page)
+        assert (refused.status, "stopped meanwhile" in refused.json["error"]) == (403, True)
+        for missing in ({}, {"stops": None}, {"stops": True}, {"stops": "1"}):
+            assert studio.post("/api/send", move | missing, page).status == 403
+        feed.wish("hold", stops=stops, **move)
+        assert "stopped meanwhile" in feed.state("refused")
+        # The release of a held motion counts as a stop too, and so does one after its end.
+        feed.wish("release")
+        assert feed.state("stops") == stops + 2
+        feed.wish("release")
+        assert feed.state("stops") == stops + 3
+        shown = [entry["l"] for entry in feed.entries if entry["d"] == "sent"]
+        assert "send_angles" not in shown
+        assert studio.post("/api/send", move | {"stops": stops + 3}, page).status == 200
+        feed.until(lambda: any(entry["l"] == "send_angles" for entry in feed.entries))
 
 
 def test_every_page_may_stop_the_arm(studio: Studio) -> None:

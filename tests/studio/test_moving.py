@@ -181,6 +181,37 @@ def test_jog_ends_when_the_page_no_longer_holds_it(opened: Page, studio: Studio,
     assert -165 < stopped < -3
 
 
+@pytest.mark.parametrize("dropped", [True, False], ids=["dropped", "still under way"])
+def test_motion_that_leaves_the_browser_after_stop_is_not_sent(
+    opened: Page, *, dropped: bool
+) -> None:
+    # The browser holds a request back while all its connections to the server are in use.
+    options = "options" if dropped else "{ ...options, signal: undefined }"
+    opened.get(
+        "(() => { const real = window.fetch; const waits = new Promise((go) => window.go = go);"
+        " window.fetch = async (path, options) => { if (path === '/api/send') await waits;"
+        f" return real(path, {options}); }}; }})()"
+    )
+    _drag(opened, SLIDER.format(1), 40)
+    opened.until(f"{STATUS} === 'sending'")
+    opened.press("Escape")
+    opened.until("document.getElementById('status').textContent === 'stop was sent'")
+    opened.get("window.go()")
+    reason = "before this command was confirmed" if dropped else "the arm was stopped meanwhile"
+    opened.until(f"{STATUS}.includes('{reason}')")
+    opened.show_tab("line")
+    assert _sent(opened, "send_angle") == 0
+    # The page knows the new number of stops, also after a motion that was held.
+    for _ in range(2):
+        opened.get(f"document.querySelector('{SLIDER.format(3)}').focus()")
+        opened.key("keyDown", "ArrowRight")
+        before = opened.get(f"{ANGLES}[2]")
+        opened.until(f"{ANGLES}[2] > {before} + 1")
+        opened.key("keyUp", "ArrowRight")
+    opened.click("#home")
+    _at_rest(opened, [0.0] * 6)
+
+
 def test_coordinates_gripper_light_and_home_are_sent(opened: Page) -> None:
     opened.send("send_angles", 0, -30, -60, 20, 10, 0, 100)
     _at_rest(opened, [0, -30, -60, 20, 10, 0])

@@ -125,12 +125,12 @@ def test_page_offers_what_a_workspace_allows_and_the_server_refuses_the_rest() -
         assert offered["coordinate"]["elements"][2]["low"] == 100
 
         def send(command: str, **given: str) -> None:
-            asyncio.run(stage.send(viewer.page, command, given, force=True))
+            asyncio.run(stage.send(viewer.page, command, given, 0, force=True))
 
         async def hold() -> list[str]:
             refused: list[str] = []
             holding = Holding(stage, viewer.page, refused.append)
-            holding.hold("send_angles", MOVE)
+            holding.hold("send_angles", MOVE, 0)
             await asyncio.sleep(0.5)
             await holding.end()
             return refused

@@ -115,6 +115,7 @@ class _Api:
             _page(request),
             body.get("command"),
             body.get("arguments"),
+            body.get("stops"),
             force=body.get("force") is True,
         )
         return JSONResponse({"result": result})

@@ -51,7 +51,7 @@ class ArmLine:
     Attributes:
         lost: how many items of traffic were dropped, because the server was too slow.
         problem: why the port cannot be used now; empty if it can.
-        stops: how often the arm was stopped.
+        stops: how often a stop was requested.
     """
 
     def __init__(self, edition: Edition, port: PortOptions, rate: float) -> None:
@@ -119,7 +119,7 @@ class ArmLine:
             arguments: its arguments by name.
             force: whether a motion is sent without a check that the arm obeys.
             permit: raises an error if the command may no longer be sent; called just before.
-            stops: the value of ``stops`` when the page requested the command.
+            stops: the value of ``stops`` that the page knew when the user requested the command.
 
         Raises:
             CobotwireError: the command is not permitted, an argument is not allowed, the arm was
@@ -139,13 +139,13 @@ class ArmLine:
         finally:
             if not query and self.stops != stops:
                 # The stop may have been sent before this command.
-                self._send_stop()
+                self.send_stop()
         if checks:
             check_accepted(self._arm, command.name, self.url)
         return result
 
     def stop(self) -> None:
-        """Send the edition's stop at once, before any request that waits.
+        """Count a stop, and send the edition's stop at once, before any request that waits.
 
         Raises:
             UsageError: the edition has no stop.
@@ -153,9 +153,15 @@ class ArmLine:
         """
         # The stop is counted first, so that no waiting motion is sent after it.
         self.stops += 1
-        self._send_stop()
+        self.send_stop()
 
-    def _send_stop(self) -> None:
+    def send_stop(self) -> None:
+        """Send the edition's stop at once; the caller has counted it.
+
+        Raises:
+            UsageError: the edition has no stop.
+            LinkError: the port is gone.
+        """
         getattr(self._arm, self.table.in_role("stop").name)()
 
     def _note(self, traffic: Traffic) -> None:

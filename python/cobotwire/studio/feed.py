@@ -2,13 +2,15 @@
 
 A message of a page is a JSON object; its key ``wish`` names what the page requests: ``stop``;
 ``hold``, ``keep`` and ``release`` for a motion that lasts while a button is held; ``seek``,
-``play`` and ``pause`` for a recording.
+``play`` and ``pause`` for a recording. Each ``stop`` and each ``release`` counts as a stop, here
+and in the page.
 """
 
 from __future__ import annotations
 
 import asyncio
 import json
+from contextlib import suppress
 from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
@@ -17,6 +19,7 @@ from cobotwire.protocol.errors import CobotwireError
 from cobotwire.studio.access import PROTOCOL
 from cobotwire.studio.holding import Holding
 from cobotwire.studio.recorded import Player, RecordedSession
+from cobotwire.studio.sending import NotPermitted
 from cobotwire.studio.stage import Stage
 from cobotwire.studio.viewers import Viewer
 
@@ -71,7 +74,17 @@ class Feed:
             elif player is not None:
                 _play(player, viewer, wish)
             else:
-                _hold(holding, wish)
+                self._hold(holding, wish)
+
+    def _hold(self, holding: Holding, wish: dict[str, Any]) -> None:
+        if wish.get("wish") == "hold":
+            holding.hold(wish.get("command"), wish.get("arguments"), wish.get("stops"))
+        elif wish.get("wish") == "keep":
+            holding.keep()
+        elif wish.get("wish") == "release" and not holding.release():
+            # The motion has ended already; the page counts its release as a stop nevertheless.
+            with suppress(NotPermitted):
+                self._stage.count_stop()
 
     async def _stop(self, viewer: Viewer, number: object) -> None:
         error = ""
@@ -81,15 +94,6 @@ class Feed:
             error = str(failed)
         shown = number if isinstance(number, int) else 0
         viewer.show(stopped={"number": shown, "error": error})
-
-
-def _hold(holding: Holding, wish: dict[str, Any]) -> None:
-    if wish.get("wish") == "hold":
-        holding.hold(wish.get("command"), wish.get("arguments"))
-    elif wish.get("wish") == "keep":
-        holding.keep()
-    elif wish.get("wish") == "release":
-        holding.release()
 
 
 async def _send(socket: WebSocket, viewer: Viewer) -> None:

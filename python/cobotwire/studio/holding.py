@@ -24,32 +24,37 @@ class Holding:
         self._tasks: set[asyncio.Task[None]] = set()
         self._held, self._silence = False, Silence(stage.silence)
 
-    def hold(self, command: object, arguments: object) -> None:
-        """Send a motion; it is stopped when the page releases it or falls silent."""
+    def hold(self, command: object, arguments: object, stops: object) -> None:
+        """Send a motion; it is stopped when the page releases it or falls silent.
+
+        ``stops`` is the number of stops that the page knew when the user pressed the button.
+        """
         if not self._held:
             self._held = True
             self._start(self._watch())
         self.keep()
-        self._start(self._send(command, arguments))
+        self._start(self._send(command, arguments, stops))
 
     def keep(self) -> None:
         """Note that the page still holds."""
         self._silence.alive(time.monotonic())
 
-    def release(self) -> None:
-        """Stop the arm, if the page holds a motion."""
-        if self._held:
-            self._held = False
-            self._start(self._stop())
+    def release(self) -> bool:
+        """Stop the arm, if the page holds a motion; return whether it did."""
+        if not self._held:
+            return False
+        self._held = False
+        self._start(self._stop())
+        return True
 
     async def end(self) -> None:
         """Stop the arm if a motion is held, when the page has left."""
         self.release()
         await asyncio.gather(*self._tasks)
 
-    async def _send(self, command: object, arguments: object) -> None:
+    async def _send(self, command: object, arguments: object, stops: object) -> None:
         try:
-            await self._stage.send(self._page, command, arguments, force=False)
+            await self._stage.send(self._page, command, arguments, stops, force=False)
         except CobotwireError as error:
             self._refuse(str(error))
 

@@ -110,10 +110,13 @@ class Stage:
         self._show()
 
     def state(self) -> dict[str, Any]:
-        """Return who may send, and the scenario."""
+        """Return who may send, the scenario, and how often the arm was stopped."""
         control = {"page": self.control.page, "motion": self.control.motion}
         scenario = self.simulated.scenario if self.simulated is not None else ""
-        return {"control": control, "watching": len(self.viewers), "scenario": scenario}
+        states = {"control": control, "watching": len(self.viewers), "scenario": scenario}
+        if isinstance(self.session, LiveSession) and isinstance(self.session.line, ArmLine):
+            states["stops"] = self.session.line.stops
+        return states
 
     def set_control(self, page: str, take: bool) -> None:
         """Let a page send, or let it send no longer.
@@ -154,8 +157,14 @@ class Stage:
         self.simulated.choose(name)
         self._show()
 
-    async def send(self, page: str, name: object, texts: object, *, force: bool) -> Any:
+    async def send(
+        self, page: str, name: object, texts: object, stops: object, *, force: bool
+    ) -> Any:
         """Send a command for a page; return its result as JSON values.
+
+        ``stops`` is the number of stops that the page knew when the user requested the command.
+        Unless it is a query, the command is refused if the number has changed: a stop can overtake
+        a request that waits in the browser or on the network.
 
         Raises:
             NotPermitted: the page may not send it.
@@ -167,9 +176,16 @@ class Stage:
         arguments = self.preparer.arguments(command, texts)
         # A wrong value is reported before the check that the arm obeys.
         self.preparer.encoded(command, arguments)
+        if type(stops) is not int:
+            if command.safety != "query":
+                raise NotPermitted(
+                    f"{command.name} was not sent: the request does not say how many stops the "
+                    "page knows; reload the page"
+                )
+            stops = line.stops
         permit = partial(self.control.check, page, command)
         result = await asyncio.get_running_loop().run_in_executor(
-            self._senders, line.call, command, arguments, force, permit, line.stops
+            self._senders, line.call, command, arguments, force, permit, stops
         )
         return as_json_value(result)
 
@@ -180,7 +196,18 @@ class Stage:
             UsageError: the edition has no stop.
             LinkError: the port is gone.
         """
-        await asyncio.get_running_loop().run_in_executor(self._stopper, self._line().stop)
+        line = self._line()
+        self.count_stop()
+        await asyncio.get_running_loop().run_in_executor(self._stopper, line.send_stop)
+
+    def count_stop(self) -> None:
+        """Refuse every motion that was requested before now, without sending stop.
+
+        Raises:
+            NotPermitted: nothing can be sent to a recording.
+        """
+        self._line().stops += 1
+        self._show()
 
     def _line(self) -> ArmLine:
         if not isinstance(self.session, LiveSession):

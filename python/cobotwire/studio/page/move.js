@@ -45,7 +45,8 @@ export class Move {
       // A command without an argument for the joint takes the targets of all joints.
       const to = control.arguments.at ? value : (targetJoints ?? joints).with(at, value).join(",");
       const values = { ...place(control), [control.arguments.to]: String(to), ...this.speed(control) };
-      return () => this.source.send(control.command, values);
+      const { stops } = this.source;
+      return () => this.source.send(control.command, values, false, stops);
     };
     return new Axis(name, range?.unit || unit, low, high, {
       limited: target === "joint" && Boolean(limit),

@@ -21,6 +21,9 @@ export class Source {
   constructor(onBatch, onState) {
     this.token = token();
     this.page = "";
+    // How many stops of the arm this page knows. The server refuses a motion with another number.
+    this.stops = 0;
+    this.unsent = new AbortController();
     this.onBatch = onBatch;
     this.onState = onState;
     this.everOpen = false;
@@ -35,7 +38,7 @@ export class Source {
       this.everOpen = true;
       this.onState("open");
     };
-    this.socket.onmessage = (message) => this.onBatch(JSON.parse(message.data));
+    this.socket.onmessage = (message) => this.take(JSON.parse(message.data));
     this.socket.onclose = () => this.closed();
   }
 
@@ -51,11 +54,28 @@ export class Source {
     if (!refused) setTimeout(() => this.connect(), AGAIN_MS);
   }
 
+  take(batch) {
+    const { hello, stops } = batch.states;
+    // An older state may arrive after a stop of this page, so only a new connection lowers the number.
+    if (stops !== undefined) this.stops = hello ? stops : Math.max(stops, this.stops);
+    this.onBatch(batch);
+  }
+
   // Send a message over the open WebSocket: it overtakes requests over HTTP.
   wish(wish, values = {}) {
+    if (wish === "stop") this.stopped();
     if (this.socket.readyState !== WebSocket.OPEN) return false;
-    this.socket.send(JSON.stringify({ wish, ...values }));
+    const { stops } = this;
+    // The server counts the same messages.
+    if (wish === "stop" || wish === "release") this.stops += 1;
+    this.socket.send(JSON.stringify(wish === "hold" ? { wish, stops, ...values } : { wish, ...values }));
     return true;
+  }
+
+  // Drop the commands that still wait in the browser, or for a reply.
+  stopped() {
+    this.unsent.abort(new Error("The arm was stopped before this command was confirmed."));
+    this.unsent = new AbortController();
   }
 
   fetch(path, options = {}) {
@@ -77,9 +97,11 @@ export class Source {
     return this.post("/api/preview", { command, arguments: values });
   }
 
-  // Send a command with the texts of its arguments, and return its result.
-  async send(command, values, force = false) {
-    return (await this.post("/api/send", { command, arguments: values, force })).result;
+  // Send a command with the texts of its arguments, and return its result. `stops` is the number of stops that this
+  // page knew when the user requested the command.
+  async send(command, values, force = false, stops = this.stops) {
+    const { signal } = this.unsent;
+    return (await this.post("/api/send", { command, arguments: values, force, stops }, signal)).result;
   }
 
   // Take the control for this page, or release it.
@@ -111,8 +133,8 @@ export class Source {
     return this.answer(await this.fetch(path));
   }
 
-  async post(path, values = {}) {
-    return this.answer(await this.fetch(path, { method: "POST", body: JSON.stringify(values) }));
+  async post(path, values = {}, signal = undefined) {
+    return this.answer(await this.fetch(path, { method: "POST", body: JSON.stringify(values), signal }));
   }
 
   async answer(response) {
