@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import json
+import socket
+import threading
 import time
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import closing, suppress
 from functools import partial
 from itertools import product
 from typing import Any
@@ -18,11 +21,12 @@ from cobotwire import editions
 from cobotwire.editions import mycobot280
 from cobotwire.editions.mycobot280 import Angles
 from cobotwire.editions.mycobot280 import messages as m
-from cobotwire.protocol.errors import UsageError
+from cobotwire.protocol.errors import LinkError, UsageError
 from cobotwire.protocol.limits import Limits, limited
 from cobotwire.protocol.refusals import refusals
 from cobotwire.simulator import SimulatedArm, TcpServer
 from cobotwire.simulator.faults import find
+from cobotwire.studio import arm_line
 from cobotwire.studio.arm_line import UNANSWERED, ArmLine, PortOptions
 from cobotwire.studio.controls import controls
 from cobotwire.studio.describing import Described, Describer
@@ -282,6 +286,93 @@ def test_motion_whose_permission_ended_is_not_sent(idle_line: ArmLine) -> None:
     with pytest.raises(NotPermitted, match="allow motion"):
         idle_line.call(command, MOTION, True, permit, idle_line.stops)
     assert _sent(idle_line) == []
+
+
+class _Port:
+    """Takes what a line sends and never replies; it can be gone for a while."""
+
+    def __init__(self) -> None:
+        self._listening = socket.create_server(("127.0.0.1", 0))
+        self.url = f"socket://127.0.0.1:{self._listening.getsockname()[1]}"
+        self._peers, self.gone = list[socket.socket](), False
+        self.received: list[bytes] = []
+        self._thread = threading.Thread(target=self._accept, daemon=True)
+        self._thread.start()
+
+    def cut(self) -> None:
+        self.gone = True
+        for peer in self._peers:
+            with suppress(OSError):
+                peer.shutdown(socket.SHUT_RDWR)
+        self._peers.clear()
+
+    def close(self) -> None:
+        self.cut()
+        with suppress(OSError):
+            self._listening.shutdown(socket.SHUT_RDWR)
+        self._listening.close()
+        self._thread.join(5)
+
+    def _accept(self) -> None:
+        while True:
+            try:
+                peer, _ = self._listening.accept()
+            except OSError:
+                return
+            if self.gone:
+                peer.close()
+                continue
+            self._peers.append(peer)
+            threading.Thread(target=self._read, args=(peer,), daemon=True).start()
+
+    def _read(self, peer: socket.socket) -> None:
+        with peer, suppress(OSError):
+            while data := peer.recv(4096):
+                self.received.append(data)
+
+
+@pytest.mark.parametrize("how", ["stop", "hold", "hold that is not released"])
+def test_stop_that_failed_without_the_port_is_sent_when_the_port_is_back(
+    how: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(arm_line, "REOPEN_SECONDS", 0.05)
+
+    async def run(port: _Port) -> int:
+        refused: list[str] = []
+        options = Options(port.url, "mycobot280", rate=0.0, allow_motion=True, silence=30.0)
+        with staged(options) as stage:
+            viewer = Viewer()
+            stage.open(viewer)
+            stage.set_control(viewer.page, True)
+            stage.set_motion(viewer.page, True)
+            assert isinstance(stage.session, LiveSession)
+            line = stage.session.line
+            assert isinstance(line, ArmLine)
+            holding = Holding(stage, viewer.page, refused.append)
+            if how != "stop":
+                holding.hold("jog_angle", {"joint": "1", "direction": "1", "speed": "9"}, 0)
+            port.cut()
+            await _until(lambda: line.problem)
+            if how == "stop":
+                with pytest.raises(LinkError):
+                    await stage.stop()
+            elif how == "hold":
+                holding.release()
+                await _until(lambda: any("stop was NOT sent" in text for text in refused))
+            port.received.clear()
+            port.gone = False
+            await _until(lambda: STOP in port.received)
+            await asyncio.sleep(0.2)
+            return port.received.count(STOP)
+
+    with closing(_Port()) as port:
+        assert asyncio.run(run(port)) == 1
+
+
+async def _until(condition: Callable[[], object]) -> None:
+    async with asyncio.timeout(10):
+        while not condition():
+            await asyncio.sleep(0.01)
 
 
 def test_history_keeps_the_last_entries_by_their_numbers() -> None:

@@ -6,6 +6,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 from cobotwire.editions import Edition
@@ -52,6 +53,7 @@ class ArmLine:
         lost: how many items of traffic were dropped, because the server was too slow.
         problem: why the port cannot be used now; empty if it can.
         stops: how often a stop was requested.
+        is_held: returns whether a page holds a motion now.
     """
 
     def __init__(self, edition: Edition, port: PortOptions, rate: float) -> None:
@@ -63,6 +65,10 @@ class ArmLine:
         """
         self.table, self.lost, self.problem = edition.TABLE, 0, ""
         self.stops = 0
+        self.is_held: Callable[[], bool] = lambda: False
+        # Stops by their number: the newest that was sent, that failed, and that was written.
+        self._numbering = threading.Lock()
+        self._newest = self._failed = self._written = 0
         self.url = port.url
         self.baudrate = port.baudrate or self.table.baudrate
         self._rate = rate
@@ -160,9 +166,28 @@ class ArmLine:
 
         Raises:
             UsageError: the edition has no stop.
-            LinkError: the port is gone.
+            LinkError: the port is gone; stop is sent again as soon as it is back.
         """
-        getattr(self._arm, self.table.in_role("stop").name)()
+        stop = getattr(self._arm, self.table.in_role("stop").name)
+        with self._numbering:
+            self._newest = number = self._newest + 1
+        try:
+            stop()
+        except LinkError:
+            self._note_failed(number)
+            raise
+        with self._numbering:
+            self._written = max(self._written, number)
+
+    def _note_failed(self, number: int) -> None:
+        with self._numbering:
+            self._failed = max(self._failed, number)
+
+    def _repeat_stop(self) -> None:
+        """Send stop if the newest one could not be sent: the arm may still move."""
+        if self._failed > self._written and self.table.find_role("stop") is not None:
+            with suppress(LinkError):
+                self.send_stop()
 
     def _note(self, traffic: Traffic) -> None:
         # The thread that reads or writes runs this, so it only queues.
@@ -172,9 +197,13 @@ class ArmLine:
     def _run(self) -> None:
         while not self._ended.is_set():
             try:
+                self._repeat_stop()
                 self._poll()
             except LinkError as error:
                 self.problem = str(error)
+                if self.is_held():
+                    # While the port is gone, a release of the motion cannot stop the arm.
+                    self._note_failed(self._written + 1)
                 self._reopen()
 
     def _poll(self) -> None:

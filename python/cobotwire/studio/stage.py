@@ -65,6 +65,10 @@ class Stage:
         # Stop has its own thread, so that it does not wait for other requests.
         self._stopper = ThreadPoolExecutor(1, "cobotwire-stop")
         self.viewers: dict[str, Viewer] = {}
+        # The pages that hold a motion.
+        self.held: set[str] = set()
+        if isinstance(session, LiveSession) and isinstance(session.line, ArmLine):
+            session.line.is_held = lambda: bool(self.held)
 
     def close(self) -> None:
         """Forget requests that were not sent yet."""
