@@ -254,6 +254,30 @@ def test_motion_requested_before_a_stop_is_refused_when_it_arrives_later() -> No
         feed.until(lambda: any(entry["l"] == "send_angles" for entry in feed.entries))
 
 
+@pytest.mark.parametrize("path", ["/api/motion", "/api/control"])
+def test_motion_that_a_page_holds_is_stopped_when_its_permission_ends(
+    studio: Studio, path: str
+) -> None:
+    jog = {"command": "jog_angle", "arguments": {"joint": "1", "direction": "1", "speed": "5"}}
+    with watching(studio) as feed:
+        page = feed.state("hello")["page"]
+        studio.post("/api/control", {"take": True}, page)
+        studio.post("/api/motion", {"on": True}, page)
+        power = {"command": "power_on", "arguments": {}, "stops": feed.states["stops"]}
+        assert studio.post("/api/send", power, page).status == 200
+        feed.wish("hold", stops=feed.states["stops"], **jog)
+        feed.until(lambda: any(entry["l"] == "jog_angle" for entry in feed.entries))
+        feed.entries.clear()
+        # The page goes on to report that it holds the button.
+        assert studio.post(path, {"on": False, "take": False}, page).status == 200
+        for _ in range(5):
+            feed.wish("keep")
+            time.sleep(0.05)
+        feed.until(lambda: any(entry["l"] == "stop" for entry in feed.entries))
+        feed.wish("release")
+        assert not any("no longer reported" in str(text) for text in feed.states.values())
+
+
 def test_every_page_may_stop_the_arm(studio: Studio) -> None:
     with watching(studio) as feed:
         feed.state("hello")

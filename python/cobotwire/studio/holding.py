@@ -31,7 +31,7 @@ class Holding:
         """
         if not self._held:
             self._held = True
-            self._stage.held.add(self._page)
+            self._stage.held[self._page] = self.release
             self._start(self._watch())
         self.keep()
         self._start(self._send(command, arguments, stops))
@@ -45,7 +45,7 @@ class Holding:
         if not self._held:
             return False
         self._held = False
-        self._stage.held.discard(self._page)
+        self._stage.held.pop(self._page, None)
         self._start(self._stop())
         return True
 

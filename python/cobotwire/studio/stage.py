@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from typing import Any
@@ -65,8 +66,8 @@ class Stage:
         # Stop has its own thread, so that it does not wait for other requests.
         self._stopper = ThreadPoolExecutor(1, "cobotwire-stop")
         self.viewers: dict[str, Viewer] = {}
-        # The pages that hold a motion.
-        self.held: set[str] = set()
+        # What ends the motion that a page holds, by page.
+        self.held: dict[str, Callable[[], object]] = {}
         if isinstance(session, LiveSession) and isinstance(session.line, ArmLine):
             session.line.is_held = lambda: bool(self.held)
 
@@ -123,7 +124,7 @@ class Stage:
         return states
 
     def set_control(self, page: str, take: bool) -> None:
-        """Let a page send, or let it send no longer.
+        """Let a page send, or let it send no longer; then the motion that it holds is stopped.
 
         Raises:
             NotPermitted: another page may send, or there is no such page.
@@ -135,16 +136,23 @@ class Stage:
             self.control.take(page)
         else:
             self.control.release(page)
+            self._end_held(page)
         self._show()
 
     def set_motion(self, page: str, on: bool) -> None:
-        """Turn the motion switch of a page.
+        """Turn the motion switch of a page; off stops the motion that the page holds.
 
         Raises:
             NotPermitted: it may not.
         """
         self.control.switch_motion(page, on)
+        if not on:
+            self._end_held(page)
         self._show()
+
+    def _end_held(self, page: str) -> None:
+        if page in self.held:
+            self.held[page]()
 
     def choose_scenario(self, page: str, name: object) -> None:
         """Begin a fault scenario, or end it.
