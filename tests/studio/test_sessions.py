@@ -9,7 +9,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
-from contextlib import closing, suppress
+from contextlib import AbstractContextManager, closing, suppress
 from functools import partial
 from itertools import product
 from typing import Any
@@ -39,6 +39,7 @@ from cobotwire.studio.live import LiveSession
 from cobotwire.studio.robot_facts import robot_facts
 from cobotwire.studio.sending import Control, NotPermitted, Preparer
 from cobotwire.studio.serving import Options, staged
+from cobotwire.studio.stage import Stage
 from cobotwire.studio.viewers import QUEUED_ENTRIES, Viewer
 
 EDITIONS = editions.names()
@@ -373,6 +374,19 @@ async def _until(condition: Callable[[], object]) -> None:
     async with asyncio.timeout(10):
         while not condition():
             await asyncio.sleep(0.01)
+
+
+def test_motion_needs_an_address_if_all_devices_would_move() -> None:
+    def stage(**given: Any) -> AbstractContextManager[Stage]:
+        return staged(Options(port.url, "mybuddy", rate=0.0, **given))
+
+    with closing(_Port()) as port:
+        with pytest.raises(UsageError, match="address") as refused, stage(allow_motion=True):
+            pass
+        assert "LEFT" in str(refused.value)
+        assert port.received == []
+        with stage(), stage(allow_motion=True, address="LEFT"):
+            pass
 
 
 def test_history_keeps_the_last_entries_by_their_numbers() -> None:

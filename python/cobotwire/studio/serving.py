@@ -21,6 +21,7 @@ from cobotwire.capture import is_capture, read
 from cobotwire.editions import Edition
 from cobotwire.inspect.following import SCHEME, FollowedRecording
 from cobotwire.kinematics.urdf_reading import with_urdf
+from cobotwire.protocol.addresses import check_one_moves
 from cobotwire.protocol.errors import CobotwireError, LinkError, UsageError
 from cobotwire.protocol.limits import Limits
 from cobotwire.studio.accepting import Server
@@ -81,7 +82,8 @@ def serve(options: Options, announce: Callable[[Access], None]) -> None:
     If pages may move the arm, it is sent ``stop`` at the end.
 
     Raises:
-        UsageError: an option is not allowed, or a recording does not exist.
+        UsageError: an option is not allowed, or a recording does not exist. With
+            ``allow_motion``, an address is required if motions go to all devices by default.
         LinkError: the port cannot be opened, or the address cannot be listened on.
         CaptureError: the file is not a recording.
     """
@@ -139,6 +141,8 @@ def staged(options: Options) -> Iterator[Stage]:
         remarks: deque[tuple[float, str, str]] = deque(maxlen=REMARKS)
         simulated = None
         url = options.source
+        if url is not None and options.allow_motion:
+            check_one_moves(edition.TABLE, options.address)
         if url is None:
 
             def remark(label: str, text: str) -> None:
