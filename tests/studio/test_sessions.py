@@ -376,6 +376,36 @@ async def _until(condition: Callable[[], object]) -> None:
             await asyncio.sleep(0.01)
 
 
+@pytest.mark.parametrize("how", ["stop", "motion off", "control released"])
+def test_request_that_waits_for_another_reply_is_not_sent_once_it_may_not_be(how: str) -> None:
+    power = editions.load("mercury_a1").TABLE.command("power_on")
+    assert power.requires_reply
+
+    async def run(port: _Port) -> None:
+        with staged(Options(port.url, "mercury_a1", allow_motion=True)) as stage:
+            viewer = Viewer()
+            stage.open(viewer)
+            stage.set_control(viewer.page, True)
+            stage.set_motion(viewer.page, True)
+            # The arm does not reply to the poll.
+            await _until(lambda: port.received)
+            sending = asyncio.create_task(stage.send(viewer.page, "power_on", {}, 0, force=False))
+            await asyncio.sleep(0.1)
+            if how == "stop":
+                await stage.stop()
+            elif how == "motion off":
+                stage.set_motion(viewer.page, False)
+            else:
+                stage.set_control(viewer.page, False)
+            with pytest.raises(NotPermitted):
+                await sending
+            await asyncio.sleep(0.1)
+            assert not any(data[3] == power.id for data in port.received)
+
+    with closing(_Port()) as port:
+        asyncio.run(run(port))
+
+
 def test_motion_needs_an_address_if_all_devices_would_move() -> None:
     def stage(**given: Any) -> AbstractContextManager[Stage]:
         return staged(Options(port.url, "mybuddy", rate=0.0, **given))

@@ -6,7 +6,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from typing import Any, NamedTuple
 
 from cobotwire.editions import Edition
@@ -16,6 +16,7 @@ from cobotwire.protocol.limits import Limits
 from cobotwire.protocol.table import Command, Role
 from cobotwire.session import Traffic
 from cobotwire.studio.sending import NotPermitted
+from cobotwire.studio.turns import Turns
 from cobotwire.transport import open_transport
 
 POLLED: tuple[Role, ...] = ("joints", "coordinates")
@@ -66,6 +67,9 @@ class ArmLine:
         self.table, self.lost, self.problem = edition.TABLE, 0, ""
         self.stops = 0
         self.is_held: Callable[[], bool] = lambda: False
+        # Held from sending a request until its reply. So a request is sent at once after the check
+        # that it may still be sent, instead of waiting for other requests in between.
+        self._replying = Turns()
         # Stops by their number: the newest that was sent, that failed, and that was written.
         self._numbering = threading.Lock()
         self._newest = self._failed = self._written = 0
@@ -118,7 +122,7 @@ class ArmLine:
         """Send a command and return its result; check first whether the arm obeys a motion.
 
         If the arm was stopped in the meantime, only a query is sent: a motion may have waited for a
-        thread, or for the arm.
+        thread, for another request, or for the arm.
 
         Args:
             command: what to send.
@@ -133,7 +137,19 @@ class ArmLine:
         """
         checks = command.starts_motion and not force
         if checks:
-            check_ready(self._arm, command.name, self.url)
+            with self._replying:
+                check_ready(self._arm, command.name, self.url)
+        # What needs no reply is written at once, whatever other requests wait for.
+        with self._replying if command.requires_reply else nullcontext():
+            result = self._send(command, arguments, permit, stops)
+        if checks:
+            with self._replying:
+                check_accepted(self._arm, command.name, self.url)
+        return result
+
+    def _send(
+        self, command: Command, arguments: dict[str, Any], permit: Callable[[], None], stops: int
+    ) -> Any:
         query = command.safety == "query"
         if not query and self.stops != stops:
             raise NotPermitted(
@@ -141,14 +157,11 @@ class ArmLine:
             )
         permit()
         try:
-            result = getattr(self._arm, command.name)(**arguments)
+            return getattr(self._arm, command.name)(**arguments)
         finally:
             if not query and self.stops != stops:
                 # The stop may have been sent before this command.
                 self.send_stop()
-        if checks:
-            check_accepted(self._arm, command.name, self.url)
-        return result
 
     def stop(self) -> None:
         """Count a stop, and send the edition's stop at once, before any request that waits.
@@ -215,7 +228,8 @@ class ArmLine:
 
     def _query(self, poll: _Poll) -> None:
         try:
-            getattr(self._arm, poll.command.name)()
+            with self._replying:
+                getattr(self._arm, poll.command.name)()
         except (ReplyTimeout, ProtocolError) as error:
             # Pages show what was received instead.
             if isinstance(error, ReplyTimeout) and error.refusal:
