@@ -106,7 +106,7 @@ export class Live extends Session {
 
   control(mine, motion = false) {
     Object.assign(this, { mine, motion });
-    this.publish({ states: { control: { page: mine ? "page" : "", motion } } });
+    this.publish({ states: { control: { mine, taken: false, motion } } });
   }
 
   allowMotion(on) {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import socket
 import time
@@ -202,10 +203,23 @@ def test_one_page_at_a_time_may_send(studio: Studio) -> None:
             assert studio.post("/api/send", query, other).status == 403
             assert studio.post("/api/send", query, page).status == 200
         # A page that leaves gives up the control.
-        while second.state("control")["page"]:
+        while second.state("control")["taken"]:
             pass
         assert studio.post("/api/control", {"take": True}, other).status == 200
         assert studio.post("/api/send", query, other).status == 200
+
+
+def test_no_page_gets_the_id_of_another_page(studio: Studio) -> None:
+    with watching(studio) as first, watching(studio) as second:
+        page, other = first.state("hello")["page"], second.state("hello")["page"]
+        studio.post("/api/control", {"take": True}, page)
+        studio.post("/api/motion", {"on": True}, page)
+        first.until(lambda: first.states["control"]["motion"])
+        assert first.states["control"] == {"mine": True, "taken": False, "motion": True}
+        second.until(lambda: second.states["control"]["taken"])
+        assert second.states["control"] == {"mine": False, "taken": True, "motion": False}
+        assert page not in json.dumps(second.states)
+        assert other not in json.dumps(first.states)
 
 
 def test_motion_needs_the_switch_of_the_page_as_well(studio: Studio) -> None:

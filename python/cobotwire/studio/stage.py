@@ -102,7 +102,7 @@ class Stage:
     def open(self, viewer: Viewer) -> None:
         """Add a page."""
         self.viewers[viewer.page] = viewer
-        viewer.show(hello=self.hello(viewer), **self.state())
+        viewer.show(hello=self.hello(viewer), **self.state(viewer.page))
         if isinstance(self.session, LiveSession):
             self.session.open(viewer)
 
@@ -114,9 +114,13 @@ class Stage:
         self.control.release(viewer.page)
         self._show()
 
-    def state(self) -> dict[str, Any]:
-        """Return who may send, the scenario, and how often the arm was stopped."""
-        control = {"page": self.control.page, "motion": self.control.motion}
+    def state(self, page: str) -> dict[str, Any]:
+        """Return for a page who may send, the scenario, and how often the arm was stopped.
+
+        A page proves by its id that it may send, so no page gets the id of another one.
+        """
+        mine, taken = page == self.control.page, self.control.page not in ("", page)
+        control = {"mine": mine, "taken": taken, "motion": mine and self.control.motion}
         scenario = self.simulated.scenario if self.simulated is not None else ""
         states = {"control": control, "watching": len(self.viewers), "scenario": scenario}
         if isinstance(self.session, LiveSession) and isinstance(self.session.line, ArmLine):
@@ -233,4 +237,4 @@ class Stage:
 
     def _show(self) -> None:
         for viewer in self.viewers.values():
-            viewer.show(**self.state())
+            viewer.show(**self.state(viewer.page))

@@ -150,11 +150,9 @@ function showLine() {
   setStatus(state.problem || "connected", state.problem ? "bad" : "good");
 }
 
-function showControl({ page, motion }) {
-  const wasFree = state.mine === false && page === "";
-  state.mine = page === source.page && page !== "";
-  state.motion = state.mine && motion;
-  state.taken = page !== "" && !state.mine;
+function showControl({ mine, taken, motion }) {
+  const wasFree = !state.mine && !mine && !taken;
+  Object.assign(state, { mine, taken, motion });
   byId("control").textContent = state.mine ? "Release control" : state.taken ? "Another page controls" : "Take control";
   byId("control").disabled = state.taken;
   byId("motion").checked = state.motion;
