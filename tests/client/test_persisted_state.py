@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
+import gc
 import json
 import os
 import socket
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -52,6 +56,62 @@ def test_late_reply_to_a_closed_client_is_not_used_by_the_next_one(who: Callable
             arm.get_encoder(1)
         with who(url) as arm:
             assert arm.get_encoder(2) == 2
+
+
+def _drop(url: str) -> None:
+    arm = MyCobot(url, timeout=0.1)
+    with pytest.raises(ReplyTimeout):
+        arm.get_encoder(1)
+
+
+async def _drop_async(url: str) -> None:
+    arm = AsyncMyCobot(url, timeout=0.1)
+    await arm.open()
+    with pytest.raises(ReplyTimeout):
+        await arm.get_encoder(1)
+
+
+@pytest.mark.parametrize("drop", [_drop, lambda url: asyncio.run(_drop_async(url))])
+@pytest.mark.filterwarnings("ignore::ResourceWarning")
+def test_late_reply_to_a_dropped_client_is_not_used_by_the_next_one(
+    drop: Callable[[str], None],
+) -> None:
+    with faulty_arm(Late(seconds=LATE)) as (url, _):
+        drop(url)
+        gc.collect()
+        with MyCobot(url, timeout=3) as arm:
+            assert arm.get_encoder(2) == 2
+
+
+NEVER_CLOSED = """
+import sys
+from cobotwire import MyCobot, ReplyTimeout, RetryPolicy
+arm = MyCobot(sys.argv[1], timeout=0.01, retry=RetryPolicy(1, grace=60))
+try:
+    arm.get_encoder(1)
+except ReplyTimeout:
+    pass
+"""
+
+
+def test_process_that_never_closes_its_client_leaves_a_note_on_its_port() -> None:
+    with ScriptedPeer() as peer:
+        subprocess.run([sys.executable, "-c", NEVER_CLOSED, peer.url], check=True)
+        assert [late.request for late in _memory(peer).recall().late] == [GET_ENCODER]
+
+
+def test_closed_client_leaves_its_note_once() -> None:
+    with ScriptedPeer() as peer:
+        arm = MyCobot(peer.url, timeout=0.01)
+        with pytest.raises(ReplyTimeout):
+            arm.get_encoder(1)
+        arm.close()
+        memory = _memory(peer)
+        assert memory.recall().late
+        arm.close()
+        del arm
+        gc.collect()
+        assert memory.recall().empty
 
 
 def test_half_a_request_of_a_closed_client_is_ended_by_the_next_one(

@@ -81,7 +81,7 @@ class AsyncConnection:
             work.add_done_callback(_close_unwanted)
             raise
         transport = self._port.transport
-        self._persisted = PersistedSession(transport)
+        self._persisted = PersistedSession(transport, self._exchange.persist)
         self._exchange.restore(self._persisted.recall())
         self._steps = AsyncSteps(transport, self._exchange, self.listeners, self._deadline)
 
@@ -170,7 +170,7 @@ class AsyncConnection:
             try:
                 self._steps.transport.close()
             finally:
-                self._persisted.leave(self._exchange.persist(self.now()))
+                self._persisted.end()
                 self._steps.lose(LinkError(self.url, "it is closed"))
                 self._port.close_recording()
 

@@ -49,7 +49,7 @@ class Connection:
         self.follows = threading.Lock()
         self._deadline = deadline
         self._steps = Steps(self._transport, exchange, self.listeners, self.now, deadline)
-        self._persisted = PersistedSession(self._transport)
+        self._persisted = PersistedSession(self._transport, self._steps.persist)
         exchange.restore(self._persisted.recall())
         forks.watch(self)
 
@@ -152,9 +152,7 @@ class Connection:
         try:
             self._transport.close()
         finally:
-            with self._steps.state:
-                state = self._exchange.persist(self.now())
-            self._persisted.leave(state)
+            self._persisted.end()
             self._port.close_recording()
 
     def leave_to_parent(self) -> None:

@@ -6,15 +6,18 @@ A reply can arrive after its session has ended. Without a note, the next session
 reply to its own first request of the same command. If a session wrote only half of a request, the
 robot completes it with the first bytes of the next session. A session that ends in one of these
 states leaves a note in this process, and in a file for other processes (``port_notes``). Most
-sessions leave nothing and write no file. A process that is killed, or never closes its client,
-leaves no note.
+sessions leave nothing and write no file. A client that is never closed leaves its note when it is
+collected, or when the process exits. A process that is killed leaves no note.
 """
 
 from __future__ import annotations
 
+import atexit
 import os
 import time
+from collections.abc import Callable
 from contextlib import suppress
+from weakref import WeakSet
 
 from cobotwire.client.port_notes import LONGEST, MOST_ENTRIES, take_note, write_note
 from cobotwire.session.outstanding import PersistedState
@@ -34,13 +37,21 @@ class PersistedSession:
     time. An open transport of the user's own has none, since its URL need not identify a port.
     """
 
-    def __init__(self, transport: Transport) -> None:
+    _persist: Callable[[float], PersistedState] | None = None
+
+    def __init__(
+        self, transport: Transport, persist: Callable[[float], PersistedState] | None = None
+    ) -> None:
+        """Find the notes of the port; ``persist`` returns what :meth:`end` leaves at a time."""
         same_again = (
             isinstance(transport, OpenedTransport)
             and transport.kind in LASTING
             and times_of(transport).real
         )
         self._keys = _keys(transport.url) if same_again else ()
+        self._persist = persist
+        if persist is not None:
+            _sessions.add(self)
 
     def recall(self) -> PersistedState:
         """Return the notes on the port, and remove them."""
@@ -50,6 +61,17 @@ class PersistedSession:
         late = {late for note in found for late in note.late if now < late.until <= now + LONGEST}
         parts = {part for note in found for part in note.parts}
         return PersistedState(tuple(sorted(late, key=lambda late: late.until)), tuple(parts))
+
+    def end(self) -> None:
+        """Leave the note of the session, once; an ended session may have a successor."""
+        if self._persist is not None and self._keys:
+            self.leave(self._persist(time.monotonic()))
+        self._persist = None
+
+    # The client was dropped without close(). References from here to the client are allowed, which
+    # those of weakref.finalize are not: an exchange refers to errors, and their frames to a client.
+    def __del__(self) -> None:
+        self.end()
 
     def leave(self, state: PersistedState) -> None:
         """Leave a note on the port if a reply is outstanding or a request was cut."""
@@ -68,6 +90,13 @@ class PersistedSession:
 
 
 _here: dict[str, PersistedState] = {}
+_sessions: WeakSet[PersistedSession] = WeakSet()
+
+
+@atexit.register
+def _end_all() -> None:
+    for session in list(_sessions):
+        session.end()
 
 
 def _keys(url: str) -> tuple[str, ...]:

@@ -20,6 +20,7 @@ from cobotwire.client.traffic import TrafficListeners
 from cobotwire.client.writing import Writer
 from cobotwire.protocol.errors import LinkError
 from cobotwire.session import Exchange, Pending, PendingRequest
+from cobotwire.session.outstanding import PersistedState
 from cobotwire.transport.interface import Transport
 
 # The longest that the reading thread waits before it checks whether others have queued a request.
@@ -67,6 +68,11 @@ class Steps:
         self.writer.leave_to_parent()
         self.state, self.reading = threading.Lock(), threading.RLock()
         self.leading = Leading(self.state)
+
+    def persist(self, now: float) -> PersistedState:
+        """Return what the next session on this port must respect."""
+        with self.state:
+            return self.exchange.persist(now)
 
     def start(self, pending: PendingRequest) -> None:
         """Queue a request. If nothing is under way, take received bytes and send it at once."""
