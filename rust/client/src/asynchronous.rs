@@ -2,8 +2,8 @@
 
 use std::future::poll_fn;
 use std::io::{self, Read, Write};
-use std::pin::Pin;
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::pin::{Pin, pin};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock};
 use std::task::{Context, Poll, Wake, Waker, ready};
 use std::time::{Duration, Instant};
 
@@ -46,6 +46,19 @@ struct Arrived(Notify);
 impl Wake for Arrived {
     fn wake(self: Arc<Self>) {
         self.0.notify_waiters();
+    }
+}
+
+/// Wakes a task, and notes when it was first woken.
+struct Alarm {
+    task: Waker,
+    at: OnceLock<Instant>,
+}
+
+impl Wake for Alarm {
+    fn wake(self: Arc<Self>) {
+        self.at.get_or_init(Instant::now);
+        self.task.wake_by_ref();
     }
 }
 
@@ -103,6 +116,24 @@ impl AsyncClient {
         let id = self.connection().submit(prepared, &self.handle, called);
         let call = Call { client: self, id };
         self.until(None, |session, _| session.take(call.id)).await
+    }
+
+    /// Perform a request, and return the longest time from a wake to the poll that followed it.
+    async fn attended(&self, prepared: &Prepared) -> (Outcome, Duration) {
+        let mut call = pin!(self.perform(prepared));
+        let (mut alarm, mut longest) = (None::<Arc<Alarm>>, Duration::ZERO);
+        poll_fn(move |context| {
+            let woken = alarm.as_ref().and_then(|alarm| alarm.at.get());
+            longest = longest.max(woken.map_or(Duration::ZERO, Instant::elapsed));
+            let next = Arc::new(Alarm {
+                task: context.waker().clone(),
+                at: OnceLock::new(),
+            });
+            alarm = Some(next.clone());
+            let polled = call.as_mut().poll(&mut Context::from_waker(&next.into()));
+            polled.map(|outcome| (outcome, longest))
+        })
+        .await
     }
 
     /// Read and write for all futures until `done` returns something. Its second argument is

@@ -73,6 +73,11 @@ impl Client {
         self.until(None, |session, _| session.take(id))
     }
 
+    /// Perform a request, and return that this thread waited for it all the time.
+    fn attended(&self, prepared: &Prepared) -> (Outcome, Duration) {
+        (self.perform(prepared), Duration::ZERO)
+    }
+
     /// Read and write for all threads until `done` returns something. Its second argument is
     /// whether `longest` has passed.
     fn until<T>(

@@ -39,7 +39,7 @@ impl<T> Iterator for Received<Option<T>> {
 /// Determines when a query is sampled, and counts the periods without a sample.
 pub(crate) struct Polling {
     prepared: Prepared,
-    period: Duration,
+    pub period: Duration,
     next: Option<Instant>,
     pub missed: u64,
     pub ended: bool,
@@ -143,7 +143,8 @@ macro_rules! client_methods {
             ///
             /// A request is sent only when the loop wants a sample, and not again within its
             /// period. A period without a reply has no sample; [`Received::missed`] counts such
-            /// periods, and those that passed before the loop wanted a sample.
+            /// periods, and those that passed before the loop wanted a sample. If the loop stops
+            /// polling for more than a period while a reply arrives, the reply counts as missed.
             pub fn poll<R: Request>(
                 &self,
                 request: R,
@@ -169,14 +170,16 @@ macro_rules! client_methods {
                 loop {
                     let (prepared, wait) = lock(polling).tick()?;
                     $sleep(wait) $($await)* ;
-                    let outcome = self.perform(&prepared) $($await)* ;
+                    let (outcome, unattended) = self.attended(&prepared) $($await)* ;
                     let mut times = outcome.iter().flatten();
                     let times = times.next().map(|each| (each.requested_at, each.replied_at));
                     let (requested_at, replied_at) = times.unwrap_or_default();
                     let value = outcome.and_then(|answer| self.handle.result::<R>(&prepared, answer));
                     let mut polling = lock(polling);
                     polling.ended = matches!(value, Err(Error::LinkError { .. }));
-                    if value.is_ok() || polling.ended {
+                    // If the caller polled nothing meanwhile, the reply may have come long ago.
+                    let is_old = value.is_ok() && unattended > polling.period;
+                    if !is_old && (value.is_ok() || polling.ended) {
                         return Some(value.map(|value| Sample { value, requested_at, replied_at }));
                     }
                     polling.missed += 1;

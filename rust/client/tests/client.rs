@@ -6,6 +6,7 @@ use std::collections::VecDeque;
 use std::future::poll_fn;
 use std::io::{ErrorKind, Read, Write};
 use std::pin::pin;
+use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::task::Poll;
 use std::time::{Duration, Instant};
@@ -16,6 +17,7 @@ use cobotwire::editions::mycobot280::{
 use cobotwire::editions::pro630::{self, Pro630};
 use cobotwire::{Error, Limits, OnDrop, Options, Port, Value};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::sync::Notify;
 use tokio::time::timeout;
 
 const ANGLES: [u8; 17] = [
@@ -254,6 +256,43 @@ fn samples_and_events_are_streams() {
         drop(far);
         let ended = next(samples).await;
         assert!(matches!(ended, Some(Err(Error::LinkError { .. }))));
+    });
+}
+
+#[test]
+fn reply_that_came_while_nobody_polled_the_samples_is_not_a_sample() {
+    runtime().block_on(async {
+        let (near, mut far) = tokio::io::duplex(1000);
+        let (requests, held) = (Arc::new(AtomicU8::new(0)), Arc::new(Notify::new()));
+        let (received, replies) = (requests.clone(), held.clone());
+        // Each reply is the number of its request. The first comes late, the second when the caller
+        // has turned away, the others at once.
+        tokio::spawn(async move {
+            while far.read_exact(&mut [0; 5]).await.is_ok() {
+                let number = received.fetch_add(1, Ordering::SeqCst) + 1;
+                match number {
+                    1 => tokio::time::sleep(6 * SHORT).await,
+                    2 => replies.notified().await,
+                    _ => {}
+                }
+                let raw = (100 * i16::from(number)).to_be_bytes();
+                let reply = [&ANGLES[..4], &raw.repeat(6), &ANGLES[16..]].concat();
+                far.write_all(&reply).await.unwrap();
+            }
+        });
+        let arm = AsyncMyCobot280::over(near, Options::default()).unwrap();
+        let mut samples = arm.poll(GetAngles {}, 10.0).unwrap();
+        let first = samples.next().await.unwrap().unwrap();
+        assert_eq!(first.value[0], 1.0);
+        while requests.load(Ordering::SeqCst) < 2 {
+            assert!(timeout(SHORT / 10, samples.next()).await.is_err());
+        }
+        held.notify_one();
+        tokio::time::sleep(10 * SHORT).await;
+        let missed = samples.missed();
+        let second = samples.next().await.unwrap().unwrap();
+        assert!(second.value[0] >= 3.0, "{second:?}");
+        assert!(samples.missed() > missed);
     });
 }
 
