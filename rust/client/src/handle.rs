@@ -5,7 +5,7 @@ use std::time::Duration;
 use cobotwire_core::exchange::{Answer, Failure, Nanos, Replier, Request as Encoded};
 use cobotwire_table::error_text;
 
-use crate::options::check_times;
+use crate::options::{check_ack_within, check_times};
 use crate::typed::{Request, Table, Typed};
 use crate::{Error, Options, Value};
 
@@ -76,6 +76,8 @@ impl Handle {
 
     /// Validate and encode a request.
     pub fn prepare_named(&self, name: &str, given: &[(&str, Value)]) -> Result<Prepared, Error> {
+        let within = self.ack_within.map(Duration::from_nanos);
+        within.map_or(Ok(()), check_ack_within)?;
         let (edition, command) = (&self.edition, self.command(name)?);
         let record = edition.commands.get(command);
         let refusal = record.and_then(|record| self.options.limits.refusal(edition, record));

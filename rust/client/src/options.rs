@@ -42,22 +42,35 @@ pub enum OnDrop {
     Leave,
 }
 
+const SECONDS: &str = "seconds above 0 and below 3600";
+
+/// Return a time in seconds, and whether it is above 0 and below 3600 seconds.
+fn seconds(time: Duration) -> (Value, bool) {
+    let fits = !time.is_zero() && time.as_secs() < 3600;
+    (Value::Real(time.as_secs_f64()), fits)
+}
+
+/// Check how long a call waits for an acknowledgement.
+pub(crate) fn check_ack_within(time: Duration) -> Result<(), Error> {
+    match seconds(time) {
+        (_, true) => Ok(()),
+        (given, false) => Err(Error::usage(bad_argument("ack_within", &given, SECONDS))),
+    }
+}
+
 /// Check what Python checks, with the same error messages.
 pub(crate) fn check_times(options: &Options) -> Result<(), Error> {
     let (retry, least, time) = (options.retry, Duration::from_nanos(1), Duration::from_nanos);
-    let seconds = |time: Duration| {
-        let fits = !time.is_zero() && time.as_secs() < 3600;
-        (Value::Real(time.as_secs_f64()), fits)
-    };
-    let above = "seconds above 0 and below 3600";
     let timeout = seconds(options.timeout.unwrap_or(least));
+    let deadline = seconds(options.deadline.unwrap_or(least));
     let shortest = seconds(time(retry.shortest_attempt));
     let grace = seconds(time(retry.grace).max(least));
     let fits = (1..=100).contains(&retry.attempts);
     let attempts = (Value::Integer(retry.attempts.into()), fits);
     let all = [
-        ("timeout", timeout, above),
-        ("retry.shortest_attempt", shortest, above),
+        ("timeout", timeout, SECONDS),
+        ("deadline", deadline, SECONDS),
+        ("retry.shortest_attempt", shortest, SECONDS),
         ("retry.grace", grace, "seconds from 0 to below 3600"),
         ("retry.attempts", attempts, "a whole number 1..100"),
     ];

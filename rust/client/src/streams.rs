@@ -113,7 +113,7 @@ macro_rules! client_methods {
             }
 
             /// Return a client on the same connection that waits for acknowledgements of one-way
-            /// requests.
+            /// requests. A time of 0, or of an hour and more, is refused by each call.
             #[must_use]
             pub fn acknowledged(&self, within: Duration) -> Self {
                 let mut other = self.clone();

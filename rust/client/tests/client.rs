@@ -187,6 +187,21 @@ fn highest_speed_is_not_set_within_a_speed() {
 }
 
 #[test]
+fn time_of_zero_or_an_hour_is_refused_before_a_byte_is_sent() {
+    let (port, hour) = (Memory::default(), Duration::from_secs(3600));
+    let arm = over(&port, |_| {});
+    for (time, given) in [(Duration::ZERO, "0.0"), (hour, "3600.0")] {
+        let text = format!("is {given}; allowed: seconds above 0 and below 3600");
+        let options = options(|options| options.deadline = Some(time));
+        let error = MyCobot280::over(port.clone(), options).unwrap_err();
+        assert_eq!(error.to_string(), format!("deadline {text}"));
+        let error = arm.acknowledged(time).stop().unwrap_err();
+        assert_eq!(error.to_string(), format!("ack_within {text}"));
+    }
+    assert!(port.written().is_empty());
+}
+
+#[test]
 fn dropped_client_stops_moving_arm_once_unless_it_was_closed() {
     for (on_drop, closed, stops) in [
         (OnDrop::Stop, false, true),
