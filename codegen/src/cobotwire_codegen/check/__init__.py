@@ -43,7 +43,7 @@ RULES: tuple[Rule, ...] = (
 INDEPENDENT: tuple[Rule, ...] = (
     *names.RULES,
     *reserved.RULES,
-    commands.ids_apart,
+    commands.ids_unique,
     evidence.vectors_apart,
 )
 

@@ -1,4 +1,4 @@
-"""Check method arguments: each call selects one variant, and the order lists every argument."""
+"""Check that arguments and results tell variants apart, and that `arguments` lists every one."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from cobotwire_codegen.errors import Problem, nearest
 from cobotwire_codegen.model import Command, Edition, Variant, named_fields
 
 
-def calls_decide(edition: Edition) -> Iterator[Problem]:
-    """Report pairs of variants that the same arguments would select."""
+def variants_distinguishable(edition: Edition) -> Iterator[Problem]:
+    """Report pairs of variants with the same arguments or the same results."""
     for command in edition.commands:
         for one, other in combinations(command.requests, 2):
             if _some_call_fits_both(one, other):
                 yield _same(command, "request", one, other)
         for one, other in combinations(command.replies, 2):
-            # The caller sees lengths and values in the result, but not the constants.
+            # The result omits constants, so replies that differ only in constants look the same.
             if _names(one) == _names(other) and _constants(one) != _constants(other):
                 yield _same(command, "reply", one, other)
 
@@ -76,4 +76,4 @@ def _order(command: Command) -> Iterator[Problem]:
             yield Problem(command.place, "bad-arguments", message)
 
 
-RULES = (calls_decide, order_complete)
+RULES = (variants_distinguishable, order_complete)

@@ -28,12 +28,16 @@ def ids_fit(edition: Edition) -> Iterator[Problem]:
 
 
 def replies_cover_command(edition: Edition) -> Iterator[Problem]:
-    """Report replies too short to have data where CMD would be, if replies carry no CMD."""
+    """Report replies with fewer data bytes than CMD is wide, if replies carry no CMD."""
     frame = edition.frame
     for command in edition.commands if not frame.replies_have_command else ():
         for variant in command.replies:
-            if sum(field.type.size for field in variant) < frame.sizes["command"]:
-                message = f"a reply of {command.name} has no data in the place of CMD"
+            width = frame.sizes["command"]
+            if sum(field.type.size for field in variant) < width:
+                message = (
+                    f"a reply of {command.name} is too short; if replies_have_command is false, "
+                    f"each reply needs {width} data bytes or more"
+                )
                 yield Problem(command.place, "bad-frame", message)
         if command.ack:
             message = f"an acknowledgement of {command.name} cannot be distinguished without CMD"
@@ -54,7 +58,7 @@ def payload_fits(edition: Edition) -> Iterator[Problem]:
                     yield Problem(command.place, "payload-too-long", message)
 
 
-def ids_apart(edition: Edition) -> Iterator[Problem]:
+def ids_unique(edition: Edition) -> Iterator[Problem]:
     """Report ids that several commands use without `shares_id` or `alias`."""
     seen: dict[int, Command] = {}
     for command in edition.commands:
@@ -85,7 +89,7 @@ def shared_ids_exist(edition: Edition) -> Iterator[Problem]:
 
 
 def aliases_match(edition: Edition) -> Iterator[Problem]:
-    """Report aliases with another message than the command that they name."""
+    """Report aliases whose message differs from that of the command they name."""
     commands = {command.name: command for command in edition.commands}
     for command in edition.commands:
         if not command.alias:
@@ -130,7 +134,7 @@ def echoes_match(edition: Edition) -> Iterator[Problem]:
                 yield Problem(field.place, "bad-echo", message)
 
 
-def replies_decided(edition: Edition) -> Iterator[Problem]:
+def replies_usable(edition: Edition) -> Iterator[Problem]:
     """Report queries without a reply, commands with two replies, and replies that only echo."""
     for command in edition.commands:
         if command.safety == "query" and not command.replies and command.text is None:
@@ -160,11 +164,11 @@ RULES = (
     ids_fit,
     replies_cover_command,
     payload_fits,
-    ids_apart,
+    ids_unique,
     shared_ids_exist,
     aliases_match,
     cases_alike,
     echoes_match,
-    replies_decided,
+    replies_usable,
     queries_not_acked,
 )

@@ -80,7 +80,7 @@ def _command(where: str, old: Command, new: Command) -> Iterator[Finding]:
         shown = [_success(side) for side in (old, new)]
         yield finding("accepted-changed", where, *shown)
     if old.alias != new.alias:
-        shown = [f"that of {side.alias}" if side.alias else "its own" for side in (old, new)]
+        shown = [side.alias or "none" for side in (old, new)]
         yield finding("alias-changed", where, *shown)
     if old.shares_id != new.shares_id:
         shown = [", ".join(side.shares_id) or "none" for side in (old, new)]

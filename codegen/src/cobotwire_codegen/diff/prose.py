@@ -56,7 +56,7 @@ def errata(old: Edition, new: Edition) -> Iterator[Finding]:
         lambda item: f"errata/{_numbers(item.lines)}",
         old.errata,
         new.errata,
-        lambda item: f"{item.says}: read {item.read}",
+        lambda item: f'for "{item.says}" read "{item.read}"',
     )
 
 

@@ -145,8 +145,8 @@ _ADDITION = {
     "result-now-required": "it could be missing, and is now always present",
 }
 _DOCS = {
-    "address-renamed": "the address {old} is now called {new}",
-    "alias-changed": "its message changed from {old} to {new}",
+    "address-renamed": "the address {old} was renamed to {new}",
+    "alias-changed": "`alias` changed from {old} to {new}",
     "arguments-restated": "the spec now states the order of arguments, ({new}), which is unchanged",
     "base-changed": "the base changed from {old} to {new}; the effects are listed separately",
     "command-moved": "it moved from the family {old} to {new}",
@@ -162,7 +162,7 @@ _DOCS = {
     "evidence-removed": "evidence was removed: {old}",
     "family-added": "the family {new} was added",
     "family-removed": "the family {old} was removed; its commands are listed separately",
-    "family-renamed": "the family {old} is now {new}, and so is its page",
+    "family-renamed": "the family {old} was renamed to {new}; the address of its page changes too",
     "firmware-changed": "the firmware changed from {old} to {new}",
     "history-changed": "the delta describes its changes differently: {new}",
     "meanings-changed": "the meanings changed from ({old}) to ({new})",
@@ -173,7 +173,7 @@ _DOCS = {
     "source-changed": "the source changed from {old} to {new}",
     "type-added": "the type {new} was added",
     "type-removed": "the type {old} was removed",
-    "type-renamed": "the type {old} is now called {new}, only in the spec",
+    "type-renamed": "the type {old} was renamed to {new}; generated code stays the same",
     "type-replaced": "the type changed from {old} to {new}; the effects are listed separately",
     "versions-changed": "the required firmware changed from ({old}) to ({new})",
     "vector-added": "a vector for {new} was added",
