@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="aafe4223")
+TABLE = load_table(__package__, checksum="3dbd2a11")

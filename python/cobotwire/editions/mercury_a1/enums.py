@@ -172,9 +172,9 @@ class ReferenceFrame(IntEnum):
     """The frame in which coordinates are given."""
 
     BASE = 0
-    """The frame of the base."""
+    """The reference frame of the base."""
     WORLD = 1
-    """The frame of the world."""
+    """The reference frame of the world."""
 
 
 class EndType(IntEnum):

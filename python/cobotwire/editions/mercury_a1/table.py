@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="f7c097c1")
+TABLE = load_table(__package__, checksum="349078eb")

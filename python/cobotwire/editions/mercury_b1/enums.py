@@ -31,7 +31,7 @@ class TargetKind(IntEnum):
     COORDS = 1
     """Coordinates."""
     BASE_COORDS = 2
-    """Coordinates in the frame of the waist."""
+    """Coordinates in the reference frame of the waist."""
 
 
 class ServoDataMode(IntEnum):

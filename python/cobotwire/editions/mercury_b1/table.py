@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="c0331f62")
+TABLE = load_table(__package__, checksum="85c1dc25")

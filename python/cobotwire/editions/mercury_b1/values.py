@@ -83,9 +83,9 @@ class GetRobotStatusResult(NamedTuple):
     beyond_limits: tuple[int, ...]
     """1 for each joint that is beyond its limits."""
     motor_errors: tuple[int, ...]
-    """The errors of each motor; a bit each."""
+    """The errors of each motor; one bit for each error."""
     software_errors: tuple[int, ...]
-    """The errors that the controller found at each motor; a bit each."""
+    """The errors that the controller found at each motor; one bit for each error."""
 
 
 class IsInitCalibrationResult(NamedTuple):

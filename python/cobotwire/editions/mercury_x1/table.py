@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="dd244f95")
+TABLE = load_table(__package__, checksum="7bfccff3")

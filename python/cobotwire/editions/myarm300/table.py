@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="5641c75a")
+TABLE = load_table(__package__, checksum="d23f9805")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="99e43f35")
+TABLE = load_table(__package__, checksum="e83df420")

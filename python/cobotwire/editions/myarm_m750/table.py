@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="d172e43d")
+TABLE = load_table(__package__, checksum="6bbe1c85")

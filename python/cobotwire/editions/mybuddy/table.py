@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="ff0453f5")
+TABLE = load_table(__package__, checksum="25a150d0")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="96a02528")
+TABLE = load_table(__package__, checksum="6e42cf75")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="54466059")
+TABLE = load_table(__package__, checksum="b5472323")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="f58712c2")
+TABLE = load_table(__package__, checksum="261895eb")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="d5ef4870")
+TABLE = load_table(__package__, checksum="ef0ee78f")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="f8e7d49b")
+TABLE = load_table(__package__, checksum="f1c432b4")

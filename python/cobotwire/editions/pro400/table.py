@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="cc536424")
+TABLE = load_table(__package__, checksum="cfa738b6")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="6b88060c")
+TABLE = load_table(__package__, checksum="ca2651ab")

@@ -3,4 +3,4 @@
 
 from cobotwire.protocol.loading import load_table
 
-TABLE = load_table(__package__, checksum="e4d76c5e")
+TABLE = load_table(__package__, checksum="ccf6ad55")

@@ -148,9 +148,9 @@ class GetRobotStatusResult(NamedTuple):
     beyond_limits: JointFlags
     """1 for each joint that is beyond its limits."""
     motor_errors: MotorErrors
-    """The errors of each motor; a bit each."""
+    """The errors of each motor; one bit for each error."""
     software_errors: MotorErrors
-    """The errors that the controller found at each motor; a bit each."""
+    """The errors that the controller found at each motor; one bit for each error."""
 
 
 class GetQuickMoveInfoResult(NamedTuple):

@@ -163,33 +163,33 @@ class _Methods2:
         gripper_type: int | None = None) -> Any:
         """Move the gripper: ``set_gripper_value(value, speed, gripper)``."""
     def set_hand_gripper_angle(self, hand_id: int, gripper_angle: int, gripper_id: int = 14) -> Any:
-        """Write a finger's register of a hand: ``set_hand_gripper(11, finger, value, gripper)``."""
+        """Write a register of a finger: ``set_hand_gripper(11, finger, value, gripper)``."""
     def set_hand_gripper_angles(self, angles: Sequence[int], speed: int,
         gripper_id: int = 14) -> Any:
         """Move all fingers of a hand: ``set_hand_gripper_angles(angles, speed, gripper)``."""
     def set_hand_gripper_calibrate(self, hand_id: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool: ``set_pro_gripper(13, value, gripper)``."""
     def set_hand_gripper_clockwise(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
-        """Write a finger's register of a hand: ``set_hand_gripper(21, finger, value, gripper)``."""
+        """Write a register of a finger: ``set_hand_gripper(21, finger, value, gripper)``."""
     def set_hand_gripper_counterclockwise(self, hand_id: int, value: int,
         gripper_id: int = 14) -> Any:
-        """Write a finger's register of a hand: ``set_hand_gripper(23, finger, value, gripper)``."""
+        """Write a register of a finger: ``set_hand_gripper(23, finger, value, gripper)``."""
     def set_hand_gripper_d(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
-        """Write a finger's register of a hand: ``set_hand_gripper(17, finger, value, gripper)``."""
+        """Write a register of a finger: ``set_hand_gripper(17, finger, value, gripper)``."""
     def set_hand_gripper_enabled(self, flag: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool: ``set_pro_gripper(10, value, gripper)``."""
     def set_hand_gripper_i(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
-        """Write a finger's register of a hand: ``set_hand_gripper(19, finger, value, gripper)``."""
+        """Write a register of a finger: ``set_hand_gripper(19, finger, value, gripper)``."""
     def set_hand_gripper_id(self, new_hand_id: int, gripper_id: int = 14) -> Any:
         """Write a register of a tool: ``set_pro_gripper(3, value, gripper)``."""
     def set_hand_gripper_min_pressure(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
-        """Write a finger's register of a hand: ``set_hand_gripper(25, finger, value, gripper)``."""
+        """Write a register of a finger: ``set_hand_gripper(25, finger, value, gripper)``."""
     def set_hand_gripper_p(self, hand_id: int, value: int, gripper_id: int = 14) -> Any:
-        """Write a finger's register of a hand: ``set_hand_gripper(15, finger, value, gripper)``."""
+        """Write a register of a finger: ``set_hand_gripper(15, finger, value, gripper)``."""
     def set_hand_gripper_speed(self, hand_id: int, speed: int, gripper_id: int = 14) -> Any:
-        """Write a finger's register of a hand: ``set_hand_gripper(32, finger, value, gripper)``."""
+        """Write a register of a finger: ``set_hand_gripper(32, finger, value, gripper)``."""
     def set_hand_gripper_torque(self, hand_id: int, torque: int, gripper_id: int = 14) -> Any:
-        """Write a finger's register of a hand: ``set_hand_gripper(27, finger, value, gripper)``."""
+        """Write a register of a finger: ``set_hand_gripper(27, finger, value, gripper)``."""
     def set_identify_mode(self, mode: int) -> Any:
         """Turn the identification on or off: ``set_identify_mode(on)``."""
     def set_pos_over_shoot(self, shoot_value: float) -> Any:
@@ -1217,7 +1217,7 @@ class MyBuddySocket(_Methods7, Limbs):
     def __init__(self, ip: str, netport: int = 9000, *,
         errors: OnFailure | None = None) -> None: ...
     def base_to_single_coords(self, base_coords: Sequence[float], arm: int) -> Any:
-        """Convert coordinates in the frame of the base to an arm's.
+        """Convert coordinates in the reference frame of the base to an arm's.
 
         Calls ``base_to_single_coords(coords, arm)``.
         """
@@ -1236,7 +1236,10 @@ class MyBuddySocket(_Methods7, Limbs):
     def get_angles(self, id: int) -> Any:
         """Read the joint angles: ``at(id).get_angles()``."""
     def get_base_coord(self, id: int) -> Any:
-        """Read an arm's coordinates in the frame of the base: ``at(id).get_base_coord()``."""
+        """Read an arm's coordinates in the reference frame of the base.
+
+        Calls ``at(id).get_base_coord()``.
+        """
     def get_coords(self, id: int) -> Any:
         """Read the coordinates: ``at(id).get_coords()``."""
     def get_encoder(self, id: int, joint_id: int) -> Any:
@@ -1408,12 +1411,12 @@ class MyBuddySocket(_Methods7, Limbs):
     def stop(self, id: int) -> Any:
         """Stop: ``at(id).stop()``."""
     def write_base_coord(self, id: int, axis: int, coord: float, speed: int) -> Any:
-        """Send one coordinate in the frame of the base.
+        """Send one coordinate in the reference frame of the base.
 
         Calls ``at(id).write_base_coord(axis, coord, speed)``.
         """
     def write_base_coords(self, id: int, coords: Sequence[float], speed: int) -> Any:
-        """Send all coordinates in the frame of the base.
+        """Send all coordinates in the reference frame of the base.
 
         Calls ``at(id).write_base_coords(coords, speed)``.
         """
@@ -1480,7 +1483,7 @@ class Mercury(_Methods2, _Methods3, _Methods6, _Methods10, _Methods14, _Methods1
     def clear_waist_queue(self) -> Any:
         """Discard the targets of head and waist."""
     def get_base_coords(self) -> Any:
-        """Read the coordinates in the frame of the waist."""
+        """Read the coordinates in the reference frame of the waist."""
     def get_servo_cw(self, head_id: int) -> Any:
         """Read the permitted deviation of a head joint: ``get_servo_cw(joint)``."""
     def get_servo_data(self, servo_id: int, address: int, mode: int) -> Any:
@@ -1500,13 +1503,16 @@ class Mercury(_Methods2, _Methods3, _Methods6, _Methods10, _Methods14, _Methods1
         """
     def send_base_coord(self, coord_id: int, base_coord: float, speed: int,
         _async: bool = False) -> Any:
-        """Send one coordinate in the frame of the waist.
+        """Send one coordinate in the reference frame of the waist.
 
         Calls ``send_base_coord(axis, coord, speed)``.
         """
     def send_base_coords(self, base_coords: Sequence[float], speed: int,
         _async: bool = False) -> Any:
-        """Send all coordinates in the frame of the waist: ``send_base_coords(coords, speed)``."""
+        """Send all coordinates in the reference frame of the waist.
+
+        Calls ``send_base_coords(coords, speed)``.
+        """
     def set_servo_cw(self, head_id: int, err_angle: float) -> Any:
         """Set the permitted deviation of a head joint: ``set_servo_cw(joint, angle)``."""
     def set_servo_data(self, servo_id: int, address: int, value: int, mode: int) -> Any:

@@ -137,7 +137,7 @@ class GripperCommands(Client):
         *,
         ack_within: float | None = None,
     ) -> None:
-        """Write a finger's register of a hand.
+        """Write a register of a finger.
 
         Writes a number into a register of one finger of a hand.
 

@@ -80,8 +80,8 @@ class SystemCommands(Client):
     ) -> None:
         """Turn a check on or off.
 
-        Sets whether the arm checks its position, or reports the end of a motion; a power cycle
-        turns both on.
+        Turns one of two functions on or off: the check of the arm's position, or the report of the
+        end of a motion.
 
         Args:
             check: A check that can be turned on and off (one of POSITION (1), MOTION_END (2)).
@@ -106,9 +106,9 @@ class SystemCommands(Client):
         their motors report.
 
         Returns: True after a collision; True while the arm moves; 1 for each joint that is beyond
-            its limits (j1, j2, j3, j4, j5, j6, j7 0..1); The errors of each motor; a bit each (j1,
-            j2, j3, j4, j5, j6, j7 0..65535); The errors that the controller found at each motor; a
-            bit each (j1, j2, j3, j4, j5, j6, j7 0..65535).
+            its limits (j1, j2, j3, j4, j5, j6, j7 0..1); The errors of each motor; one bit for each
+            error (j1, j2, j3, j4, j5, j6, j7 0..65535); The errors that the controller found at
+            each motor; one bit for each error (j1, j2, j3, j4, j5, j6, j7 0..65535).
         Safety: query. Command id 0xA2.
         """
         return self._call(messages.system.GetRobotStatus())
@@ -131,7 +131,7 @@ class SystemCommands(Client):
     def get_motors_run_err(self) -> MotorErrors:
         """Read the motors' errors during the motion.
 
-        Reads the errors of each motor during the last motion; a bit each.
+        Reads the errors of each motor during the last motion; one bit for each error.
 
         Returns: The errors of the seven motors, base first (j1, j2, j3, j4, j5, j6, j7 0..65535).
         Safety: query. Command id 0x9C.

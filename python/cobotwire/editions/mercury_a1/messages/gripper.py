@@ -121,7 +121,7 @@ class SetProGripperReply(Reply[None], to=SetProGripper, wire=(255, "status")):
 class SetHandGripper(
     Request[None], command="set_hand_gripper", wire=("gripper", "address", "finger", "value")
 ):
-    """Write a finger's register of a hand."""
+    """Write a register of a finger."""
 
     address: int
     finger: int

@@ -16,7 +16,7 @@ class BaseCommands(Client):
     """Coordinates of both arms in one frame, at the waist."""
 
     def get_base_coords(self) -> Coords:
-        """Read the coordinates in the frame of the waist.
+        """Read the coordinates in the reference frame of the waist.
 
         Returns: Position and orientation of the end of the arm (x, y, z -3276.8..3276.7
             millimetres; rx, ry, rz -327.68..327.67 degrees).
@@ -27,9 +27,10 @@ class BaseCommands(Client):
     def send_base_coord(
         self, axis: Axis | int, coord: float, speed: int, *, ack_within: float | None = None
     ) -> None:
-        """Send one coordinate in the frame of the waist.
+        """Send one coordinate in the reference frame of the waist.
 
-        Moves the end of the arm so that one coordinate in the frame of the waist has a new value.
+        Moves the end of the arm so that one coordinate in the reference frame of the waist has a
+        new value.
 
         Args:
             axis: One of the six coordinates (one of X (1), Y (2), Z (3), RX (4), RY (5), RZ (6)).
@@ -44,7 +45,7 @@ class BaseCommands(Client):
     def send_base_coords(
         self, coords: Sequence[float], speed: int, *, ack_within: float | None = None
     ) -> None:
-        """Send all coordinates in the frame of the waist.
+        """Send all coordinates in the reference frame of the waist.
 
         Args:
             coords: Position and orientation of the end of the arm (6 numbers (x -351.1..566.9
@@ -57,9 +58,10 @@ class BaseCommands(Client):
         return self._send(messages.base.SendBaseCoords(coords, speed), ack_within)
 
     def is_in_position_base_coords(self, target: Sequence[float]) -> bool:
-        """Check whether a pose in the frame of the waist is reached.
+        """Check whether a pose in the reference frame of the waist is reached.
 
-        Reports whether the arm is at a target, given as coordinates in the frame of the waist.
+        Reports whether the arm is at a target, given as coordinates in the reference frame of the
+        waist.
 
         Args:
             target: Position and orientation of the end of the arm (6 numbers (x -351.1..566.9

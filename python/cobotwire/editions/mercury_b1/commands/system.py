@@ -36,10 +36,11 @@ class SystemCommands(Client):
 
         Returns: True after a collision; True while the arm moves; 1 for each joint that is beyond
             its limits (8 numbers (j1, j2, j3, j4, j5, j6, j7, j13 0..1) or 7 numbers (j1, j2, j3,
-            j4, j5, j6, j7 0..1)); The errors of each motor; a bit each (10 numbers (j1, j2, j3, j4,
-            j5, j6, j7, j13, j11, j12 0..65535) or 7 numbers (j1, j2, j3, j4, j5, j6, j7 0..65535));
-            The errors that the controller found at each motor; a bit each (8 numbers (j1, j2, j3,
-            j4, j5, j6, j7, j13 0..65535) or 7 numbers (j1, j2, j3, j4, j5, j6, j7 0..65535)).
+            j4, j5, j6, j7 0..1)); The errors of each motor; one bit for each error (10 numbers (j1,
+            j2, j3, j4, j5, j6, j7, j13, j11, j12 0..65535) or 7 numbers (j1, j2, j3, j4, j5, j6, j7
+            0..65535)); The errors that the controller found at each motor; one bit for each error
+            (8 numbers (j1, j2, j3, j4, j5, j6, j7, j13 0..65535) or 7 numbers (j1, j2, j3, j4, j5,
+            j6, j7 0..65535)).
         Safety: query. Command id 0xA2.
         """
         return self._call(messages.system.GetRobotStatus())

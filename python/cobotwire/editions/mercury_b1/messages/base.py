@@ -12,7 +12,7 @@ from ..values import Coords
 
 
 class GetBaseCoords(Request[Coords], command="get_base_coords"):
-    """Read the coordinates in the frame of the waist."""
+    """Read the coordinates in the reference frame of the waist."""
 
 
 class GetBaseCoordsReply(Reply[Coords], to=GetBaseCoords):
@@ -22,7 +22,7 @@ class GetBaseCoordsReply(Reply[Coords], to=GetBaseCoords):
 
 
 class SendBaseCoord(Request[None], command="send_base_coord"):
-    """Send one coordinate in the frame of the waist."""
+    """Send one coordinate in the reference frame of the waist."""
 
     axis: Axis | int
     coord: float
@@ -36,7 +36,7 @@ class SendBaseCoordReply(Reply[None], to=SendBaseCoord, wire=(255, "status")):
 
 
 class SendBaseCoords(Request[None], command="send_base_coords"):
-    """Send all coordinates in the frame of the waist."""
+    """Send all coordinates in the reference frame of the waist."""
 
     coords: Sequence[float]
     speed: int
@@ -51,7 +51,7 @@ class SendBaseCoordsReply(Reply[None], to=SendBaseCoords, wire=(255, "status")):
 class IsInPositionBaseCoords(
     Request[bool], command="is_in_position_base_coords", wire=("target", 2)
 ):
-    """Check whether a pose in the frame of the waist is reached."""
+    """Check whether a pose in the reference frame of the waist is reached."""
 
     target: Sequence[float]
 

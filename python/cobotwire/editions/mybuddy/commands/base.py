@@ -16,7 +16,7 @@ class BaseCommands(Client):
     """Coordinates that refer to the base of the robot, and collisions of its arms."""
 
     def single_to_base_coords(self, coords: Sequence[float], arm: ArmSide | int) -> Coords:
-        """Convert an arm's coordinates to the frame of the base.
+        """Convert an arm's coordinates to the reference frame of the base.
 
         Converts coordinates of one arm to coordinates that refer to the base of the robot.
 
@@ -32,7 +32,7 @@ class BaseCommands(Client):
         return self._call(messages.base.SingleToBaseCoords(coords, arm))
 
     def base_to_single_coords(self, coords: Sequence[float], arm: ArmSide | int) -> Coords:
-        """Convert coordinates in the frame of the base to an arm's.
+        """Convert coordinates in the reference frame of the base to an arm's.
 
         Converts coordinates that refer to the base of the robot to coordinates of one arm.
 
@@ -64,7 +64,7 @@ class BaseCommands(Client):
         return self._call(messages.base.Collision(left, right))
 
     def get_base_coord(self) -> Coords:
-        """Read an arm's coordinates in the frame of the base.
+        """Read an arm's coordinates in the reference frame of the base.
 
         Reads the position and orientation of the end of an arm, relative to the base of the robot.
 
@@ -75,7 +75,7 @@ class BaseCommands(Client):
         return self._call(messages.base.GetBaseCoord())
 
     def get_base_coords(self) -> GetBaseCoordsResult:
-        """Read both arms' coordinates in the frame of the base.
+        """Read both arms' coordinates in the reference frame of the base.
 
         Reads the position and orientation of both arms' ends, relative to the base of the robot.
 
@@ -87,7 +87,7 @@ class BaseCommands(Client):
         return self._call(messages.base.GetBaseCoords())
 
     def write_base_coord(self, axis: Axis | int, coord: float, speed: int) -> None:
-        """Send one coordinate in the frame of the base.
+        """Send one coordinate in the reference frame of the base.
 
         Moves an arm so that one coordinate, relative to the base of the robot, has a new value.
         Send it to LEFT or RIGHT.
@@ -103,7 +103,7 @@ class BaseCommands(Client):
         return self._send(messages.base.WriteBaseCoord(axis, coord, speed))
 
     def write_base_coords(self, coords: Sequence[float], speed: int) -> None:
-        """Send all coordinates in the frame of the base.
+        """Send all coordinates in the reference frame of the base.
 
         Moves an arm to a position and orientation relative to the base of the robot. Send it to
         LEFT or RIGHT.

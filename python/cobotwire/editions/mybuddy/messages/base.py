@@ -12,7 +12,7 @@ from ..values import Coords, GetBaseCoordsResult
 
 
 class SingleToBaseCoords(Request[Coords], command="single_to_base_coords"):
-    """Convert an arm's coordinates to the frame of the base."""
+    """Convert an arm's coordinates to the reference frame of the base."""
 
     coords: Sequence[float]
     arm: ArmSide | int
@@ -25,7 +25,7 @@ class SingleToBaseCoordsReply(Reply[Coords], to=SingleToBaseCoords):
 
 
 class BaseToSingleCoords(Request[Coords], command="base_to_single_coords"):
-    """Convert coordinates in the frame of the base to an arm's."""
+    """Convert coordinates in the reference frame of the base to an arm's."""
 
     coords: Sequence[float]
     arm: ArmSide | int
@@ -51,7 +51,7 @@ class CollisionReply(Reply[int], to=Collision):
 
 
 class GetBaseCoord(Request[Coords], command="get_base_coord"):
-    """Read an arm's coordinates in the frame of the base."""
+    """Read an arm's coordinates in the reference frame of the base."""
 
 
 class GetBaseCoordReply(Reply[Coords], to=GetBaseCoord):
@@ -61,7 +61,7 @@ class GetBaseCoordReply(Reply[Coords], to=GetBaseCoord):
 
 
 class GetBaseCoords(Request[GetBaseCoordsResult], command="get_base_coords"):
-    """Read both arms' coordinates in the frame of the base."""
+    """Read both arms' coordinates in the reference frame of the base."""
 
 
 class GetBaseCoordsReply(Reply[GetBaseCoordsResult], to=GetBaseCoords, result=GetBaseCoordsResult):
@@ -72,7 +72,7 @@ class GetBaseCoordsReply(Reply[GetBaseCoordsResult], to=GetBaseCoords, result=Ge
 
 
 class WriteBaseCoord(Request[None], command="write_base_coord"):
-    """Send one coordinate in the frame of the base."""
+    """Send one coordinate in the reference frame of the base."""
 
     axis: Axis | int
     coord: float
@@ -80,7 +80,7 @@ class WriteBaseCoord(Request[None], command="write_base_coord"):
 
 
 class WriteBaseCoords(Request[None], command="write_base_coords"):
-    """Send all coordinates in the frame of the base."""
+    """Send all coordinates in the reference frame of the base."""
 
     coords: Sequence[float]
     speed: int

@@ -34,9 +34,9 @@ class SystemCommands(Client):
         their motors report.
 
         Returns: True after a collision; True while the arm moves; 1 for each joint that is beyond
-            its limits (j1, j2, j3, j4, j5, j6 0..1); The errors of each motor; a bit each (j1, j2,
-            j3, j4, j5, j6 0..65535); The errors that the controller found at each motor; a bit each
-            (j1, j2, j3, j4, j5, j6 0..65535).
+            its limits (j1, j2, j3, j4, j5, j6 0..1); The errors of each motor; one bit for each
+            error (j1, j2, j3, j4, j5, j6 0..65535); The errors that the controller found at each
+            motor; one bit for each error (j1, j2, j3, j4, j5, j6 0..65535).
         Safety: query. Command id 0xA2.
         """
         return self._call(messages.system.GetRobotStatus())
@@ -59,7 +59,7 @@ class SystemCommands(Client):
     def get_motors_run_err(self) -> MotorErrors:
         """Read the motors' errors during the motion.
 
-        Reads the errors of each motor during the last motion; a bit each.
+        Reads the errors of each motor during the last motion; one bit for each error.
 
         Returns: The errors of the six motors, base first (j1, j2, j3, j4, j5, j6 0..65535).
         Safety: query. Command id 0x9C.

@@ -3,7 +3,7 @@
 
 CLASS = {'name': 'MyBuddySocket', 'module': 'mybuddysocket', 'doc': 'A myBuddy behind a TCP server.', 'edition': 'mybuddy', 'opens': 'socket', 'constructor': (('ip', 'str'), ('netport', 'int', 9000)), 'helpers': (('buddy', 'Limbs'),), 'native': 'MyBuddy', 'joints': 6, 'devices': {'0': 'all', '1': 'left', '2': 'right', '3': 'waist'}, 'methods_in': ('mycobot280', 'mypalletizer260', 'mybuddysocket')}
 METHODS = (
-    (('MyBuddySocket',), 'base_to_single_coords', "Convert coordinates in the frame of the base to an arm's", 'query', (('base_coords', 'Sequence[float]'), ('arm', 'int')), (('coords', 'base_coords'), ('arm', 'arm')), (('gives', 'list'),)),
+    (('MyBuddySocket',), 'base_to_single_coords', "Convert coordinates in the reference frame of the base to an arm's", 'query', (('base_coords', 'Sequence[float]'), ('arm', 'int')), (('coords', 'base_coords'), ('arm', 'arm')), (('gives', 'list'),)),
     (('MyBuddySocket',), 'clear_error_information', 'Clear the error', 'send_acked', (('ids', 'int', 0),), (), (('address', 'ids'), ('result', 'listed'))),
     (('MyBuddySocket',), 'collision', 'Check whether the arms collide', 'query', (('left_angles', 'Sequence[float]'), ('right_angles', 'Sequence[float]')), (('left', 'left_angles'), ('right', 'right_angles')), (('gives', 'same'),)),
     (('MyBuddySocket',), 'collision_switch', 'Turn the collision check on or off', 'send', (('state', 'int'),), (('watched', 'state'),), (('gives', 'same'),)),
@@ -11,7 +11,7 @@ METHODS = (
     (('MyBuddySocket',), 'get_acceleration', 'Read the acceleration', 'query', (('id', 'int'),), (), (('address', 'id'), ('result', 'listed'), ('gives', 'parts'))),
     (('MyBuddySocket',), 'get_angle', 'Read the angle of a joint', 'query', (('id', 'int'), ('joint_id', 'int')), (('joint', 'joint_id'),), (('address', 'id'), ('gives', 'same'))),
     (('MyBuddySocket',), 'get_angles', 'Read the joint angles', 'query', (('id', 'int'),), (), (('address', 'id'), ('gives', 'list'))),
-    (('MyBuddySocket',), 'get_base_coord', "Read an arm's coordinates in the frame of the base", 'query', (('id', 'int'),), (), (('address', 'id'), ('gives', 'list'))),
+    (('MyBuddySocket',), 'get_base_coord', "Read an arm's coordinates in the reference frame of the base", 'query', (('id', 'int'),), (), (('address', 'id'), ('gives', 'list'))),
     (('MyBuddySocket',), 'get_coords', 'Read the coordinates', 'query', (('id', 'int'),), (), (('address', 'id'), ('gives', 'list'))),
     (('MyBuddySocket',), 'get_encoder', 'Read the encoder of one joint', 'query', (('id', 'int'), ('joint_id', 'int')), (('joint', 'joint_id'),), (('address', 'id'), ('gives', 'same'))),
     (('MyBuddySocket',), 'get_encoders', 'Read the encoders of all joints', 'query', (('id', 'int'),), (), (('address', 'id'), ('gives', 'list'))),
@@ -91,6 +91,6 @@ METHODS = (
     (('MyBuddySocket',), 'set_tool_reference', 'Set the tool reference', 'send', (('id', 'int'), ('coords', 'Sequence[float]')), (('coords', 'coords'),), (('address', 'id'), ('gives', 'same'))),
     (('MyBuddySocket',), 'set_world_reference', 'Set the world reference', 'send', (('id', 'int'), ('coords', 'Sequence[float]')), (('coords', 'coords'),), (('address', 'id'), ('gives', 'same'))),
     (('MyBuddySocket',), 'stop', 'Stop', 'send', (('id', 'int'),), (), (('address', 'id'), ('gives', 'same'))),
-    (('MyBuddySocket',), 'write_base_coord', 'Send one coordinate in the frame of the base', 'send', (('id', 'int'), ('axis', 'int'), ('coord', 'float'), ('speed', 'int')), (('axis', 'axis'), ('coord', 'coord'), ('speed', 'speed')), (('address', 'id'), ('gives', 'same'))),
-    (('MyBuddySocket',), 'write_base_coords', 'Send all coordinates in the frame of the base', 'send', (('id', 'int'), ('coords', 'Sequence[float]'), ('speed', 'int')), (('coords', 'coords'), ('speed', 'speed')), (('address', 'id'), ('gives', 'same'))),
+    (('MyBuddySocket',), 'write_base_coord', 'Send one coordinate in the reference frame of the base', 'send', (('id', 'int'), ('axis', 'int'), ('coord', 'float'), ('speed', 'int')), (('axis', 'axis'), ('coord', 'coord'), ('speed', 'speed')), (('address', 'id'), ('gives', 'same'))),
+    (('MyBuddySocket',), 'write_base_coords', 'Send all coordinates in the reference frame of the base', 'send', (('id', 'int'), ('coords', 'Sequence[float]'), ('speed', 'int')), (('coords', 'coords'), ('speed', 'speed')), (('address', 'id'), ('gives', 'same'))),
 )
