@@ -143,18 +143,20 @@ class AsyncWriter:
 
     def _start_waiting(self, ended: list[tuple[Write, LinkError | None]]) -> None:
         """Start the writes that wait, until the transport keeps one; add those that ended."""
-        if not self._waiting or self._current is not None:
-            return
-        following = self._waiting.popleft()
-        why: LinkError | None = None
-        try:
-            self._start(following)
-        except LinkError as failed:
-            why = failed
-        finally:
+        raised: Exception | None = None
+        while self._waiting and self._current is None:
+            following = self._waiting.popleft()
+            why: LinkError | None = None
+            try:
+                self._start(following)
+            except LinkError as failed:
+                why = failed
+            except Exception as error:  # of a traffic listener
+                raised = raised or error
             if following is not self._current:
                 ended.append((following, why))
-            self._start_waiting(ended)
+        if raised is not None:
+            raise raised
 
     def withdraw(self) -> None:
         """Do not send the request that was begun last, if no byte of it was taken."""
