@@ -1,7 +1,7 @@
 """Random tables and streams of their frames, wider than the spec's language.
 
-Scales may be negative in their numerator or denominator, several commands share an id, fields lie
-under selectors, and the frames on the line hold any raw values, allowed or not.
+Scales may be negative in their numerator or denominator, several commands share an id, fields have
+selectors, and the frames on the line hold any raw values, allowed or not.
 
 The strategies are constants, or cached: Hypothesis validates each object once, which would take a
 third of the time of a test if each draw made new ones.

@@ -31,7 +31,8 @@ BEGIN = datetime(2026, 11, 16, tzinfo=UTC)
 DAY, HOUR, INTERVAL = 86_400.0, 3_600.0, 300.0
 WORK_BEGIN, WORK_END = 8 * HOUR, 18 * HOUR
 ROOM = 22.0
-# The most that each joint warms above the room at work; the shoulder carries the arm.
+# The largest rise of each joint's temperature above the room's during work, in degrees Celsius. The
+# shoulder carries the arm.
 WARMING = (9.0, 24.0, 19.0, 11.0, 8.0, 5.0)
 WARMING_SECONDS = 2 * HOUR
 PANIC_SECONDS = 14 * HOUR + 20 * 60
@@ -84,7 +85,7 @@ def capture(path: Path) -> Iterator[Callable[[Traffic], None]]:
 
 
 def read_out(arm: MyCobot280) -> None:
-    """Read what the answers need; a reply that was lost in the panic is missing."""
+    """Send the queries that docs/answers.md evaluates; the panic may lose a reply."""
     for query in (arm.get_angles, arm.get_servo_temps, arm.get_reboot_count):
         try:
             query()

@@ -19,7 +19,7 @@ SECOND = 10**9
 
 
 @given(st.lists(st.lists(st.integers(0, 30), max_size=6), max_size=4), st.integers(0, 9))
-def test_gaps_are_the_differences_that_are_longer(steps: list[list[int]], longest: int) -> None:
+def test_gaps_are_pauses_longer_than_the_limit(steps: list[list[int]], longest: int) -> None:
     gaps, batches, time = Gaps(longest), [], 0
     for batch in steps:
         batches.append([time := time + step for step in batch])

@@ -87,7 +87,7 @@ def test_survey_at_a_network_port_is_of_a_real_arm_only_if_the_owner_states_it(
     assert [read_survey(each)[0]["simulated"] for each in (path, stated)] == [True, False]
 
 
-def test_motion_needs_an_answer_before_a_byte_is_sent(tmp_path: Path) -> None:
+def test_motion_is_refused_without_confirmation(tmp_path: Path) -> None:
     done = cobotwire("survey", "--simulated", "--allow-motion", "-o", tmp_path / "survey.zip")
     assert done.returncode == 2
     assert "--yes-workspace-is-clear" in done.stderr
@@ -110,7 +110,7 @@ def test_survey_continues_an_interrupted_one(path: Path) -> None:
     assert done.returncode == 0, done.stderr
     after, recorded = read_survey(path)
     assert recorded.startswith(recording)
-    # Known values are not requested again, unless they are compared.
+    # Known values are not requested again, unless a fact compares them with later ones.
     request = b"\xfe\xfe\x02" + bytes([TABLE.command("get_reboot_count").id]) + b"\xfa"
     assert recorded.count(request) == recording.count(request)
     found = {fact["fact"]: fact["verdict"] for fact in after["facts"]}
@@ -123,7 +123,7 @@ def test_survey_continues_an_interrupted_one(path: Path) -> None:
     assert "is the survey of another device: continue it without --address" in other.stderr
 
 
-def test_recording_is_evaluated_by_the_requests_that_it_has(path: Path, tmp_path: Path) -> None:
+def test_only_queries_in_the_recording_decide_facts(path: Path, tmp_path: Path) -> None:
     recording = tmp_path / "recording.pcapng"
     whole, traffic = read_survey(path)
     recording.write_bytes(traffic)
@@ -140,7 +140,7 @@ def test_recording_is_evaluated_by_the_requests_that_it_has(path: Path, tmp_path
     assert found[recording]["simulated"] is True
     assert found[recording]["date"] <= whole["date"]
     decided = {f["fact"]: f["verdict"] for f in found[half]["facts"] if f["verdict"] != "not seen"}
-    # Requests that were not recorded get no reply; this silence contradicts nothing.
+    # Requests that were not recorded get no reply; that contradicts nothing.
     assert {*decided.values()} == {"confirmed"}
     assert 20 < len(decided) < sum(f["verdict"] == "confirmed" for f in whole["facts"])
     assert found[half]["finished"] is False
@@ -154,9 +154,7 @@ def test_recording_is_evaluated_by_the_requests_that_it_has(path: Path, tmp_path
     assert (done.returncode, "holds no request" in done.stderr) == (2, True)
 
 
-def test_silence_of_a_recording_that_may_have_a_late_reply_contradicts_nothing(
-    tmp_path: Path,
-) -> None:
+def test_missing_reply_contradicts_nothing_if_a_late_reply_is_possible(tmp_path: Path) -> None:
     loaded = codec.load(TABLE)
     request = {n: loaded.encode(n, "request", ()) for n in ("is_paused", "get_error_information")}
     angles, paused = (
@@ -245,7 +243,7 @@ HEAD = b'{"format": "cobotwire-survey", "version": 1, "facts": ['
 
 
 @given(st.binary(max_size=200), st.sampled_from([None, b"", HEAD]))
-def test_any_file_is_read_or_rejected_by_name(
+def test_file_that_is_no_survey_is_rejected_with_a_message(
     tmp_path_factory: pytest.TempPathFactory, data: bytes, head: bytes | None
 ) -> None:
     path = tmp_path_factory.getbasetemp() / "hostile.zip"

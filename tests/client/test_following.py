@@ -27,7 +27,7 @@ def frames(traffic: list[Traffic]) -> list[bytes]:
     return [each.data for each in traffic if each.direction == "sent"]
 
 
-def test_joints_do_not_pause_inside_a_path_where_a_loop_of_moves_stands_at_each_point() -> None:
+def test_follow_does_not_pause_between_points_unlike_a_loop_of_moves() -> None:
     for speed, lag in ((10, 0.0), (30, 0.0), (60, 0.05)):
         done = run(follow, speed, lag)
         assert done.watched.standstills() == 0
@@ -86,10 +86,11 @@ def test_each_edition_follows_or_says_why_not(name: str) -> None:
             assert arm.follow([target], speed=100).ended == "end"
 
 
-def once(values: dict[float, Any], clock: Watched) -> Callable[[], Any]:
-    """Return a source that turns joint 1, until it returns or raises the newest of timed values.
+def timed_source(values: dict[float, Any], clock: Watched) -> Callable[[], Any]:
+    """Return a source of targets that turn joint 1.
 
-    ``values`` has the time from which each value is returned; a type is raised.
+    From each time in ``values`` on, the source returns that value instead, or raises it if it is an
+    exception type.
     """
 
     def source() -> Any:
@@ -124,10 +125,10 @@ def test_source_that_fails_stops_the_arm_once_and_raises_a_clear_error(
         pytest.raises(error, match=text),
         MyCobot280(clock.transport, trace=traffic.append, on_error=on_error) as arm,
     ):
-        arm.follow(once({0.5: value}, clock))
+        arm.follow(timed_source({0.5: value}, clock))
     sent = frames(traffic)
     assert sent.count(STOP) == (on_error == "stop")
-    # Nothing moves the arm after stop, and it queues its targets again.
+    # Nothing moves the arm after stop, and the arm is back in queue mode.
     assert sent[-2:] == [STOP, QUEUE] if on_error == "stop" else sent[-1] == QUEUE
     assert 5 < clock.positions[-1][0] < 25
 
@@ -135,7 +136,7 @@ def test_source_that_fails_stops_the_arm_once_and_raises_a_clear_error(
 def test_source_that_ends_brings_the_arm_to_its_last_target_without_a_stop() -> None:
     clock, traffic = Watched(), list[Traffic]()
     with MyCobot280(clock.transport, trace=traffic.append) as arm:
-        report = arm.follow(once({1.0: [45, 0, 0, 0, 0, 0], 1.2: StopIteration}, clock))
+        report = arm.follow(timed_source({1.0: [45, 0, 0, 0, 0, 0], 1.2: StopIteration}, clock))
         assert report.ended == "end"
         assert arm.get_angles() == pytest.approx([45, 0, 0, 0, 0, 0], abs=0.6)
         assert STOP not in frames(traffic)
@@ -198,7 +199,7 @@ def test_missing_library_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
         arm.follow(PATH)
 
 
-def test_iterators_are_read_meanwhile_and_their_end_and_errors_arrive() -> None:
+def test_iterators_are_read_while_the_arm_moves_and_their_end_and_errors_arrive() -> None:
     def targets(error: bool) -> Iterator[Sequence[float]]:
         for step in range(20):
             yield [step / 4, 0, 0, 0, 0, 0]
@@ -329,7 +330,7 @@ def test_commands_of_the_gripper_and_of_settings_do_not_end_follow() -> None:
 
 
 @pytest.mark.parametrize(("argument", "value"), [("limits", Limits(speed=3)), ("rate", 4.9)])
-def test_argument_of_a_wrong_type_is_named(argument: str, value: Any) -> None:
+def test_wrong_argument_is_named(argument: str, value: Any) -> None:
     with MyCobot280(Watched().transport) as arm, pytest.raises(UsageError) as caught:
         arm.follow([[1, 0, 0, 0, 0, 0]], **{argument: value})
     assert caught.value.argument == argument

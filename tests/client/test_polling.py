@@ -25,12 +25,12 @@ NO_GRACE = RetryPolicy(attempts=1, grace=0.0)
 LONG = RetryPolicy(attempts=1, grace=60.0)
 # A delay of replies, in seconds, during which a test can act.
 SLOW = 0.2
-# A test that takes longer has hung, in seconds.
+# Seconds after which a test counts as hung.
 LONGEST = 15
 
 
 def run(peer: Any, drive: Callable[[AsyncMyCobot], Awaitable[Any]], **options: Any) -> Any:
-    """Return what ``drive`` returns for an arm at the peer, and the requests of the peer."""
+    """Return what ``drive`` returns for an arm at the peer, and the bytes that it got."""
 
     async def main() -> Any:
         async with AsyncMyCobot(peer.url, **options) as arm, asyncio.timeout(LONGEST):
@@ -140,7 +140,7 @@ def test_forked_child_neither_reads_nor_writes_the_line_of_a_stream() -> None:
     assert run(peer, drive, timeout=20) == ((0, 1.4), REQUEST)
 
 
-# At 25 Hz, the wait for the next period is so short that only the timer checks.
+# At 25 Hz the period begins so soon that only the timer can notice that the stream was closed.
 @pytest.mark.parametrize(("rate", "closed_after"), [(2, 0.1), (25, 0.0)])
 def test_stream_that_is_closed_before_its_period_sends_nothing(
     rate: float, closed_after: float

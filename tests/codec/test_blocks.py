@@ -22,7 +22,7 @@ LISTENING: list[Listening] = ["request", "reply", "both"]
 
 
 def stream_of(edition: str, share: float, size: int) -> bytes:
-    """Return frames of an edition; a share of them is damaged, and as many follow noise."""
+    """Return frames of an edition; a share is damaged, and the same share is preceded by noise."""
     dice, stream = Random(edition), bytearray()
     table = codec_of(edition, "native").table
     frames = [vector.frame for vector in vectors.edition(edition).vectors if vector.frame]
@@ -55,10 +55,10 @@ def test_large_stream_has_the_frames_and_noise_of_a_framer(
     check_against_framer(codec_of(edition, "native"), listening, stream)
 
 
-# One of the second and third positions is an even number of bytes after the shift, and the other
-# one an odd number.
+# The second and third lane start at offsets of different parity, so even shifts suffice to try
+# every offset within OUTER.
 @pytest.mark.parametrize("shift", range(0, len(OUTER), 2))
-def test_frames_within_frames_do_not_mislead_the_positions_of_a_block(shift: int) -> None:
+def test_frames_within_frames_do_not_mislead_the_lanes_of_a_block(shift: int) -> None:
     check_against_framer(codec_of("mycobot", "native"), "reply", bytes(shift) + OUTER * 8_000)
 
 

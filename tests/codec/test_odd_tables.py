@@ -64,7 +64,7 @@ def test_error_of_a_conversion_is_raised_unless_a_value_before_it_is_wrong() -> 
                 codec.encode("set", "request", wrong)
 
 
-def test_value_between_two_raw_values_becomes_the_even_one() -> None:
+def test_value_halfway_between_two_raw_values_rounds_to_the_even_one() -> None:
     half = small_tables.field("half", small_tables.number(scale=(1, 2)))
     for codec in both(small_tables.table(small_tables.command(1, "set", (Variant((half,)),)))):
         frames = [codec.encode("set", "request", (value,)) for value in (0.25, 0.75, 1.25)]

@@ -27,7 +27,7 @@ from strategies import codec_of
 ANGLES = bytes.fromhex("FE FE 0E 20 00 64 00 C8 01 2C 01 90 01 F4 02 8A FA")
 # Frames that end with a footer; with an address and a sum; with a CRC.
 FAMILIES = ("mycobot280", "mybuddy", "pro450")
-# Two threads read more than this.
+# A stream of this many bytes is divided between threads.
 LARGE = 9 << 20
 LISTENING: st.SearchStrategy[Listening] = st.sampled_from(["request", "reply", "both"])
 

@@ -16,12 +16,12 @@ from cobotwire_codegen.errors import Place
 from cobotwire_codegen.publish import edition_json
 
 EDITIONS = ("mycobot", "mycobot280")
-# The document has the places of commands and types, but not those of fields, members and texts.
+# edition.json states the file and line of commands and types, not of fields, members and texts.
 WITHOUT_PLACE = ("Field", "Member", "Text", "ReadBack", "Effect")
 
 
 def leaves(value: Any) -> Iterator[str]:
-    """Yield every text of the model, and every place, as the document writes them."""
+    """Yield every text of the model, and every place, as edition.json writes them."""
     if isinstance(value, Place):
         yield str(value)
     elif isinstance(value, tuple):
@@ -29,7 +29,7 @@ def leaves(value: Any) -> Iterator[str]:
             yield from leaves(part)
     elif is_dataclass(value) and not isinstance(value, type):
         for field in fields(value):
-            # ``gone`` is where the delta removes a command; the place of that change is the same.
+            # Skip where the delta removes a command: the change itself states the same place.
             if field.name == "gone":
                 continue
             if field.name != "place" or type(value).__name__ not in WITHOUT_PLACE:
@@ -41,7 +41,7 @@ def leaves(value: Any) -> Iterator[str]:
 
 
 def texts(value: Any) -> Iterator[str]:
-    """Yield every text of a JSON document; the words of effects are keys."""
+    """Yield every string of a JSON document, also the keys, because effects are stated as keys."""
     if isinstance(value, dict):
         for key, part in value.items():
             yield key
@@ -57,13 +57,13 @@ def texts(value: Any) -> Iterator[str]:
 def test_complete_document_holds_every_text_of_the_model(name: str) -> None:
     edition = vectors.edition(name)
     published = set(texts(json.loads(edition_json(edition, complete=True))))
-    # The document has ranges as raw bounds; the codec tests compare these with the model.
+    # edition.json has ranges as raw bounds; the codec tests compare these with the model.
     ranges = {str(part) for t in edition.types for part in getattr(t, "range", None) or ()}
     # The usual layout and encoding are left out.
     usual = {*edition.frame.layout, *edition.frame.counted} if edition.frame.usual else set()
     usual |= {"integer"}  # the encoding of every wire type that is not a float
     missing = set(leaves(edition)) - ranges - published - usual
-    # The document has a selector's value without a name as an integer.
+    # In edition.json a selector value that has no name is an integer, not a string.
     assert not {text for text in missing if text and not text.isdigit()}
 
 

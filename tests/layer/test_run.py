@@ -60,7 +60,7 @@ def test_program_runs_unchanged(served: tuple[Served, str]) -> None:
     assert arm.received.count("stop") == 1
 
 
-def test_module_runs_a_program_like_the_verb(served: tuple[Served, str]) -> None:
+def test_python_m_runs_a_program_like_cobotwire_run(served: tuple[Served, str]) -> None:
     _, port = served
     command = [sys.executable, "-m", "cobotwire.pymycobot", str(TYPICAL), port]
     ended = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
@@ -201,7 +201,7 @@ def test_installed_library_is_the_same_before_and_after() -> None:
     assert pymycobot.MyCobot280.__module__ == "pymycobot.mycobot280"
 
 
-def test_error_of_ours_is_shown_with_the_frames_of_the_program_only(tmp_path: Path) -> None:
+def test_traceback_of_our_error_shows_only_lines_of_the_program(tmp_path: Path) -> None:
     script = tmp_path / "absent_port.py"
     script.write_text(
         "import pymycobot\n"

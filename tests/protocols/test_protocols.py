@@ -50,7 +50,7 @@ def test_receiver_remembers_its_rate(package: Any) -> None:
 
 
 @pytest.mark.parametrize("codec", CODECS)
-def test_stream_of_status_packets_is_read_as_the_first_message_of_their_size(
+def test_reply_without_id_is_decoded_as_the_first_message_of_its_size(
     package: Any, codec: codecs.CodecName
 ) -> None:
     used = codecs.load(package("feetech").TABLE, codec)

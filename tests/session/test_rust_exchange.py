@@ -35,7 +35,7 @@ DEPTHS = {"unread": 3, "echoes": 3}
 
 
 def _talk(probe: Probe, document: Any, path: Path, dice: Random, times: int) -> None:
-    """Play random talks of an edition to both."""
+    """Run random events on the Python and the Rust exchange; compare their decisions."""
     codec = codecs.load(table_of(document), "native")
     with Recorder(str(path)) as recorder:
         for _ in range(times):
@@ -46,7 +46,8 @@ def _talk(probe: Probe, document: Any, path: Path, dice: Random, times: int) -> 
     recorder.check(probe.ask)
 
 
-# Fixed seeds notice each change of a rule or a text; Hypothesis draws talks that differ less.
+# With fixed seeds, these runs notice every changed rule or text; Hypothesis would make runs that
+# differ less from each other.
 @needed
 @pytest.mark.parametrize("path", EDITIONS, ids=lambda path: path.parent.name)
 def test_both_do_the_same_in_every_edition(probe: Probe, path: Path) -> None:

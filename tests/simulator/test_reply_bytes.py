@@ -18,7 +18,7 @@ def _reply(arm: SimulatedArm, *requests: str) -> str:
 
 
 def _with_one_flag() -> list[str]:
-    """Return the editions with the document's frames that report all servos by one flag."""
+    """Return the editions without a check whose is_all_servo_enable reply is one flag."""
     tables = [editions.load(name).TABLE for name in editions.names()]
     return [
         table.edition

@@ -1,4 +1,4 @@
-"""States transport, defaults, limits and the number of joints as the maker's library has them."""
+"""Report baud rates, deadlines, defaults, limits and joints that differ from the library's."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def transport(edition: Edition) -> Iterator[str]:
 
 
 def defaults(edition: Edition) -> Iterator[str]:
-    """Report arguments with another default than those of the library's method, or without one.
+    """Report arguments whose default differs from the default in the library's method.
 
     A command with the name of a library method has its arguments in the same order.
     """
@@ -168,7 +168,7 @@ def limits(edition: Edition) -> Iterator[str]:
             low, high = low - high, high - low
         steps = [max(-MOST, ceil(low / type.scale)), min(MOST, floor(high / type.scale))]
         if [*type.bounds] != steps:
-            yield f"{name} goes from {type.bounds}; the library's table {steps}"
+            yield f"{name} has the bounds {type.bounds}; the library's table {steps}"
 
 
 def joints(edition: Edition) -> Iterator[str]:

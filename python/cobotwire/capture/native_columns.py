@@ -29,7 +29,7 @@ class NativeColumnsReader:
         self._reader.add(data)
 
     def feed(self, data: Data) -> CapturedColumns:
-        """Take the next bytes of the file; return what became certain."""
+        """Take the next bytes of the file; return what later bytes cannot change."""
         self._reader.add(data)
         return self._taken()
 
@@ -43,7 +43,7 @@ class NativeColumnsReader:
         codec = self._codec_of(interface)
         if isinstance(codec, NativeCodec):
             return codec
-        # Both codecs return the same values.
+        # Both codecs return the same values, so the native one may replace the reference.
         native = native_codec(codec.table)
         if isinstance(native, NativeCodec):
             return native

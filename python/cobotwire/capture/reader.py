@@ -23,8 +23,8 @@ def read(
 ) -> CaptureReader:
     """Open a capture; iterate over the result to get its packets.
 
-    Files that are compressed with gzip or zstd are decompressed. Files of other programs that state
-    times or directions are read too; ``docs/guide/decode.md`` lists them.
+    Files that are compressed with gzip or zstd are decompressed. Files that other programs wrote
+    are read too, if they state times or directions; ``docs/guide/decode.md`` lists them.
 
     Args:
         path: the file.

@@ -16,7 +16,7 @@ class ReportedFirmware:
         self.version: float | None = None
 
     def result(self, pending: Pending) -> dict[str, Any]:
-        """Return the fields of a reply, or raise its error; add the firmware that is needed to it.
+        """Return the fields of a reply, or raise its error, which states the firmware needed.
 
         Raises:
             CobotwireError: the reason why there is no reply.

@@ -72,9 +72,10 @@ class Panic(Finding):
 
 
 def recognise_panic(residue: Residue, at: int, start: int) -> Verdict:
-    """Recognise the dump at ``start``; only line ends precede it from ``at`` on.
+    """Recognise the dump at ``start``.
 
-    It ends after ``Rebooting...``, before the next panic, at the end of the text or at the limit.
+    The bytes from ``at`` to ``start`` are line ends and belong to the dump. It ends after
+    ``Rebooting...``, before the next panic, at the end of the text or at the limit.
     """
     data = residue.data
     dump = _DUMP.match(data, start, at + PANIC_LIMIT + _DAMAGED_LOOKAHEAD)

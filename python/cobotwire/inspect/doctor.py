@@ -26,7 +26,7 @@ QUIET_SECONDS = 0.3
 SILENT = 3
 # An adapter that holds replies back takes 16 ms or more; otherwise a round trip is below 13 ms.
 SLOW_SECONDS = 0.0155
-# How many seconds an arm has to reply to a query that shows its edition.
+# Within how many seconds an arm replies to a query that shows its edition.
 EDITION_SECONDS = 0.5
 ROLES: tuple[Role, ...] = (*readiness.ROLES, "moving", "joints", "coordinates")
 

@@ -33,14 +33,15 @@ type Fields = Vec<Vec<Vec<String>>>;
 struct GivenBus<'py> {
     frame: Bound<'py, PyAny>,
     lengths: Vec<u16>,
+    /// The id that all servos obey.
     every: u8,
     errors: Vec<(String, u8)>,
     registers: Vec<String>,
     instructions: Vec<GivenInstruction>,
 }
 
-/// An instruction: its byte, its name, its legal LENs, its operands, and the largest id of a servo
-/// among them.
+/// An instruction: its byte, its name, its legal LENs, its operands, and the largest servo
+/// id that an operand may hold.
 #[derive(FromPyObject)]
 struct GivenInstruction {
     code: u8,

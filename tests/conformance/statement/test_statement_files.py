@@ -113,6 +113,10 @@ MISTAKES = {
         HEAD + "ixit: {deadlines: {stop: 1}}",
         "deadlines has no key",
     ),
+    "no content": (
+        "# later",
+        "arm.yaml:1:1: the file has no content; a statement is a YAML mapping",
+    ),
     "list": ("[1]", "arm.yaml:1:1: a statement is a list; allowed: a mapping"),
     "key twice": (
         HEAD + "maker: a\nmaker: b\n",

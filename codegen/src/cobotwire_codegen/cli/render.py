@@ -25,7 +25,7 @@ from cobotwire_codegen.render import environment
 )
 @format_option
 def render(template: str, file: str, out: str | None, format: str) -> None:
-    """Fill the Jinja TEMPLATE from the edition FILE: a target of your own.
+    """Fill the Jinja TEMPLATE from the edition FILE, to make a target of your own.
 
     The template can use the checked model as `edition`, and all names of the built-in templates. It
     may include templates in its folder. docs/targets.md shows an example.

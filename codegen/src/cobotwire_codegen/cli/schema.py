@@ -27,7 +27,8 @@ def schema(files: tuple[str, ...], out: str | None, check_only: bool, root: str)
     """Write spec/schema.json, the JSON Schema of the spec's files, or the schema of FILES.
 
     Editors with a YAML language server apply it to every file that starts with the line
-    `# yaml-language-server: $schema=PATH/schema.json`. It completes the types of the editions.
+    `# yaml-language-server: $schema=PATH/schema.json`. They then offer the names of the editions'
+    types as completions.
     """
     if bool(files) != bool(out):
         raise click.UsageError(

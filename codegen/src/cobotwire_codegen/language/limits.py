@@ -133,7 +133,7 @@ TWO_ACKS = Limit(
     "A request has one acknowledgement, and `ack_within` returns at the first frame that is a "
     "legal one. If the second one has an id of its own, state it as a command with `event: true`. "
     "If it reports the end of a motion, add `role: motion ended`; then waited motions end with it. "
-    "If both have the same id, state a variant of one of them as the acknowledgement; the second "
+    "If both have the same id, state only one of them as the acknowledgement; the second "
     "frame is reported as one that nobody waits for.",
     "state the first as the `reply` of the command, which has `ack: true`, the second as an event",
     ("acks", "ack_stages", "second_ack", "final_ack", "completion", "completed_by"),

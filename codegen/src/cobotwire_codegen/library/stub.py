@@ -1,4 +1,4 @@
-"""Renders the types of the classes: a stub that states each method once, and the modules."""
+"""Render the .pyi stub of the classes of the maker's library; it states each method once."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Stub:
         return self._methods.get((given.name,), [])
 
     def bases(self, given: LibraryClass) -> str:
-        """Return the bases: shared methods, helpers, a similar class, or the common base."""
+        """Return the class line: shared methods, helpers, a similar class, or the common base."""
         shared = [name for names, name in self._shared.items() if given.name in names]
         helpers = [place_of(each)[1] for each in given.helpers]
         found = [*helpers, *([given.like] if given.like else [])] or ["CompatibleClient"]
@@ -63,7 +63,7 @@ class Stub:
 
 
 def native(given: LibraryClass) -> list[str]:
-    """Return the attributes that say which of our clients a class uses."""
+    """Return the attributes that state which of our clients a class uses."""
     here, there = (f"{each.name}.{each.class_name}" for each in (given.edition, given.elsewhere))
     both = [here] if here == there else [there, here]
     return [f"NATIVE: ClassVar[type[{here}]]", f"arm: {' | '.join(both)}"]
@@ -76,7 +76,7 @@ def constructor(given: LibraryClass) -> str:
 
 
 def _stated(method: Method) -> str:
-    """Return a method of the stub: its head, what it does, and how our client is called."""
+    """Return a method of the stub: its head, what it does, and the call of our method."""
     parts = ["self", *_parameters(of_method(method))]
     head = _packed(f"def {method.name}(", parts, ") -> Any:", 4)
     title, ours = method.command.title, our_call(method)
@@ -103,14 +103,14 @@ def _parameters(typed: Typed) -> list[str]:
 
 
 def our_call(method: Method) -> str:
-    """Return how our client is called; empty if it is called in the same way."""
+    """Return a sentence that shows the call of our method; empty if the arguments are the same."""
     if tuple(each.name for each in method.parameters) == method.command.argument_names:
         return ""
     return f"Calls ``{native_call(method)}``."
 
 
 def native_call(method: Method) -> str:
-    """Return the call of our client, with the numbers that no parameter gives."""
+    """Return the call of our method; an argument that the library's method fixes is a value."""
     device = f"at({method.address})." if method.address else ""
     ours = method.command.argument_names
     pairs = zip_longest(ours, method.passes[: len(ours)], fillvalue="")

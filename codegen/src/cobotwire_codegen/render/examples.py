@@ -15,7 +15,7 @@ Direction = Literal["request", "reply"]
 def examples(edition: Edition, command: Command) -> dict[Direction, Vector]:
     """Return the request and the reply that a page shows; the reply repeats the request's values.
 
-    The document's own frames come first, and vectors derived from another edition's last.
+    The document's own frames come first, and derived vectors come last.
     """
     every = [v for v in edition.vectors if v.command == command.name and v.frame]
     every.sort(key=_rank)

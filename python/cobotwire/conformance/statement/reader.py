@@ -94,7 +94,11 @@ def _mapping(
 ) -> dict[str, Any]:
     """Return the values of a mapping; add its mistakes to ``problems``."""
     if not isinstance(node.value, dict):
-        problems.append((node.place, f"{what} is {_shown(node)}; allowed: a mapping"))
+        if node.value is None:
+            message = "the file has no content; a statement is a YAML mapping"
+        else:
+            message = f"{what} is {_shown(node)}; allowed: a mapping"
+        problems.append((node.place, message))
         return {}
     values: dict[str, Any] = {}
     for key, inner in node.value.items():

@@ -1,4 +1,4 @@
-"""Find the behaviours of devices that come from outside of cobotwire.
+"""Find the behaviours of devices that other packages or modules provide.
 
 A package provides them by an entry point of the group ``cobotwire.behaviours``, named like its
 edition; a user names a module.

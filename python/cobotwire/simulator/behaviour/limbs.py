@@ -1,4 +1,4 @@
-"""Robots with two arms and a waist: the waist, and what concerns several limbs.
+"""Simulate the waist of a robot with two arms, and commands that address several limbs.
 
 Each limb has a state of its own. No source gives the geometry of such a robot, so queries of
 coordinates have no reply.
@@ -14,7 +14,7 @@ from cobotwire.simulator.behaviour.registry import Behaviours, Unanswerable, fam
 from cobotwire.simulator.state import ArmState
 from cobotwire.simulator.targets import go_to_encoders
 
-# In percent: the speed if a request states a duration, or a speed for each servo.
+# In percent; used if a request states a duration, or a speed for each servo, instead of one speed.
 USUAL_SPEED = 50
 
 LIMBS = family("mybuddy", Behaviours())
@@ -35,11 +35,11 @@ def set_encoders(arm: ArmState, now: float, request: m.SetEncoders) -> None:
 def is_waist_in_position(
     arm: ArmState, now: float, request: m.IsWaistInPosition
 ) -> m.IsWaistInPositionReply:
-    """Reply whether the waist is at an angle."""
+    """Reply whether the waist has reached the requested angle."""
     if request.kind != TargetKind.ANGLES:
         raise Unanswerable("no source says what the coordinate of a waist is")
     if arm.joints != 1:
-        raise Unanswerable("the request is for the waist")
+        raise Unanswerable("only the waist replies to it")
     return m.IsWaistInPositionReply(
         reached=abs(arm.standing(now)[0] - request.target) <= arm.near[0]
     )

@@ -19,13 +19,12 @@ pub enum Safety {
     Motion,
     /// It switches power.
     Power,
-    /// It writes what remains without power.
+    /// It writes a value that survives a power cycle.
     Persistent,
 }
 
 /// The name of a field. `echo`: the field of a reply repeats the argument of that name. `status`:
-/// the field may report success or failure, as every field may that is not a constant without
-/// labels.
+/// the field may report success or failure; only a constant without labels may not.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // the names of the fields explain them
 pub struct Named {
@@ -64,8 +63,8 @@ pub struct Facts {
     pub request: Vec<Vec<Named>>,
     /// The fields of each variant of its reply.
     pub reply: Vec<Vec<Named>>,
-    /// The raw values of the last status of its reply that report success. If it is empty, each
-    /// status that is 0 reports failure.
+    /// The raw values with which the last status field of its reply reports success. If the list
+    /// is empty, a 0 in any status field that is not an echo reports failure.
     pub accepted: Vec<i64>,
 }
 

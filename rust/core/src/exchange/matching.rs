@@ -85,7 +85,7 @@ impl Protocol {
 
     /// Return whether a frame is a legal reply to a request that is no longer waited for.
     pub(super) fn can_reply_to(&self, frame: &SeenFrame, request: &Request) -> bool {
-        // The request's own bytes may be only their echo, with the reply still to come.
+        // A frame equal to the request may be its echo; the reply may still come.
         if !request.can_have_reply(self, frame) || frame.bytes() == request.frame {
             return false;
         }
@@ -131,7 +131,8 @@ impl Protocol {
         others && !self.replies(of).iter().any(own)
     }
 
-    /// Return whether no frame is a legal reply to both commands. A text has no constants.
+    /// Return whether no frame is a legal reply to both commands; false if the reply of one is not
+    /// a frame.
     fn exclusive(&self, one: usize, other: usize) -> bool {
         let (one, other) = (self.replies(one), self.replies(other));
         let excluded = |variant: &Variant| other.iter().all(|other| variant.excludes(other));
@@ -153,7 +154,8 @@ impl Protocol {
             let values = one.argument(name).zip(other.argument(name));
             values.is_some_and(|(one, other)| !same(one, other))
         };
-        // Older firmware omits the repeated argument, so the argument must differ in every variant.
+        // Older firmware replies with a variant without the echo, so every variant must echo an
+        // argument that differs between the two requests.
         let tells = |variant: &Vec<Named>| {
             let mut fields = variant.iter();
             fields.any(|named| named.echo && differs(&named.name))
@@ -175,7 +177,7 @@ impl Request {
         }
     }
 
-    /// Return whether a frame can be a reply of its command, whatever its values are. The command
+    /// Return whether a frame can be a reply to the request; the values do not matter. The command
     /// id decides; in a format without ids in replies, the size does.
     pub(super) fn can_have_reply(&self, protocol: &Protocol, frame: &SeenFrame) -> bool {
         if protocol.has_ids() {
@@ -185,7 +187,7 @@ impl Request {
         !matches!(reply, Err(DecodeError::Frame { .. }))
     }
 
-    /// Return whether a reply of its command repeats its own arguments.
+    /// Return whether each echo field of a reply has the value that this request sent.
     pub(super) fn repeated_by(&self, protocol: &Protocol, reply: &Decoded) -> bool {
         let facts = protocol.facts.get(reply.variant.command);
         let names = facts.and_then(|facts| facts.reply.get(reply.variant.variant));

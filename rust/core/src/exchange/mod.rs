@@ -8,8 +8,8 @@
 //! Only one request waits at a time, since the protocol has no sequence numbers. The others queue
 //! in the order of submission; later ones may overtake one that is held for an outstanding reply.
 //! One-way requests are sent at once, and only once, also while another request waits. Times are
-//! nanoseconds of a clock that never goes back. Sums that are too large saturate; that time never
-//! comes.
+//! nanoseconds of a clock that never goes back. Sums of times saturate; a saturated time
+//! never comes.
 
 mod acks;
 mod alignment;
@@ -95,8 +95,8 @@ impl Exchange {
     // What callers want.
 
     /// Queue a request that has a reply. The arm has the time `wait` to reply; `None`: the time
-    /// that the protocol states. The caller waits at most until `ends_by`, also for the request's
-    /// turn.
+    /// that the protocol states. The caller waits at most until `ends_by`, including the wait for
+    /// the request's turn.
     pub fn enqueue(
         &mut self,
         request: Request,
@@ -241,7 +241,8 @@ impl Exchange {
             let failure = pending.expire(now, Some(waited_for));
             self.finished.insert(pending.ticket, Err(failure));
         }
-        // A copy of the request does not count as its reply, which still had time to come.
+        // The caller stops waiting before the arm's deadline, so a received copy of the request is
+        // not taken as its reply.
         let over = self.waiting().is_some_and(|waiting| waiting.ends_by <= now);
         let expired = over.then(|| self.expire(now, Some(WaitedFor::Reply)));
         expired.flatten().into_iter().collect()
@@ -436,7 +437,7 @@ impl Exchange {
         self.note(noise)
     }
 
-    /// Find out what a frame is; its first byte came at `began_at` or earlier.
+    /// Find out what a frame is. `began_at`: when its first byte came, or 0 if that is unknown.
     fn match_frame(&mut self, frame: SeenFrame, now: Nanos, began_at: Nanos) -> Event {
         let is_copy = self.echo.take_copy(&frame);
         let waits = waiting(&mut self.last).filter(|waiting| frame.offset >= waiting.offset);

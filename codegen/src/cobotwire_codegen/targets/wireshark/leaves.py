@@ -12,8 +12,9 @@ from cobotwire_codegen.render.words import units
 class Leaf(NamedTuple):
     """One number, text or byte string.
 
-    ``kind`` is a name of Wireshark's ``ftypes``; ``mask`` has the bits of a part of a word, or is
-    0. ``reading`` says how the dissector reads it; a plain number needs no further values.
+    ``kind`` is a name of Wireshark's ``ftypes``. ``mask`` selects the bits of a bit field within
+    its raw value; it is 0 for any other leaf. ``reading`` has the parameters with which the
+    dissector reads the leaf.
     """
 
     item: str

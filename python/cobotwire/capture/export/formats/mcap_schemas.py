@@ -1,4 +1,4 @@
-"""Make the JSON schemas of the channels of MCAP files with the messages of a table."""
+"""Make a JSON schema for each MCAP channel; a channel carries one message of a table."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Schema = dict[str, Any]
 
 
 def of_table(title: str, schema: Any) -> Schema:
-    """Return the schema of the messages of an Arrow schema: its fields, not our columns."""
+    """Return the JSON schema for an Arrow schema, without the columns that the export adds."""
     fields = {field.name: _of_field(field) for field in schema if field.name not in OWN}
     return {"title": title, "type": "object", "properties": fields}
 
