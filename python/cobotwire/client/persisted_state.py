@@ -64,9 +64,10 @@ class PersistedSession:
 
     def end(self) -> None:
         """Leave the note of the session, once; an ended session may have a successor."""
-        if self._persist is not None and self._keys:
+        if self._persist is not None:
             self.leave(self._persist(time.monotonic()))
-        self._persist = None
+            # Only now: a Ctrl-C before this line makes close() leave the note again.
+            self._persist = None
 
     # The client was dropped without close(). References from here to the client are allowed, which
     # those of weakref.finalize are not: an exchange refers to errors, and their frames to a client.
@@ -86,7 +87,7 @@ class PersistedSession:
 
     def leave_to_parent(self) -> None:
         """Leave no note from now on: after a fork the session is the parent's."""
-        self._keys = ()
+        self._keys, self._persist = (), None
 
 
 _here: dict[str, PersistedState] = {}
