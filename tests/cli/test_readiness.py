@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import pytest
 
-from cobotwire.editions import mercury_a1, mycobot280
+from cobotwire.editions import mercury_a1, mycobot280, mycobot320
 from cobotwire.simulator import PtyServer, SimulatedArm
 from command_line import printed, started
 from in_process import cobotwire
@@ -56,6 +56,17 @@ def test_motion_to_an_arm_that_is_not_ready_is_not_sent_unless_forced(
     assert len(refused.stderr.splitlines()) == 1
     assert target == (0, 0, 0, 0, 0, 0)
     assert (forced.returncode, forced.stderr.startswith("sent; acknowledged")) == (0, True)
+
+
+def test_motion_without_arguments_is_checked_but_no_stop_is() -> None:
+    arm = SimulatedArm(mycobot280.TABLE, powered=False)
+    with PtyServer(arm) as server:
+        assert cobotwire("call", server.url, "move_round").returncode == 7
+    arm = SimulatedArm(mycobot320.TABLE, powered=False)
+    with PtyServer(arm) as server:
+        words = ("--edition", "mycobot320", "set_pro_gripper_stop", "14")
+        done = cobotwire("call", server.url, *words)
+    assert (done.returncode, "was not sent" in done.stderr) == (0, False)
 
 
 def test_doctor_reports_why_an_arm_is_not_ready_for_motion() -> None:

@@ -147,6 +147,21 @@ def test_cancelled_motion_is_not_sent_by_a_transport_with_threads() -> None:
     assert frames(transport.written) == [STOP, STOP]
 
 
+def test_waiting_writes_are_sent_and_end_though_a_listener_raises() -> None:
+    async def scenario(arm: AsyncMyCobot280, port: FullPort) -> None:
+        calls = [await started(arm.send_angles(ANGLES, 50)) for _ in range(3)]
+
+        def fail(traffic: Any) -> None:
+            raise RuntimeError
+
+        arm.add_traffic_listener(fail)
+        await cancel(calls.pop(0))
+        port.room = 1000
+        await asyncio.wait_for(asyncio.gather(*calls), 2.0)
+
+    assert received_after(scenario, 0) == [MOTION] * 2
+
+
 def test_closing_fails_every_write_that_waits() -> None:
     async def scenario(arm: AsyncMyCobot280, port: FullPort) -> None:
         calls = [await started(call) for call in (arm.send_angles(ANGLES, 50), arm.stop())]

@@ -250,7 +250,7 @@ def test_motion_requested_before_a_stop_is_refused_when_it_arrives_later() -> No
         studio.post("/api/control", {"take": True}, page)
         studio.post("/api/motion", {"on": True}, page)
         other.wish("stop", number=1)
-        assert feed.state("stops") == stops + 1, "pages are told"
+        assert feed.state("stops") == stops + 1, "every page gets the new count"
         refused = studio.post("/api/send", move | {"stops": stops}, page)
         assert (refused.status, "stopped meanwhile" in refused.json["error"]) == (403, True)
         for missing in ({}, {"stops": None}, {"stops": True}, {"stops": "1"}):

@@ -103,7 +103,7 @@ class AsyncConnection:
         data, pending = exchange.send_one_way(request, self.now(), ack_within, ends_by)
         try:
             steps.check()
-            await steps.writer.write(data, ends_by, request.command.role in ("stop", "halt"))
+            await steps.writer.write(data, ends_by, request.command.is_stop)
             steps.turn()
             if pending is not None:
                 await self._wait(pending)

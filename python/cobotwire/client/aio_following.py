@@ -14,6 +14,7 @@ from cobotwire.client.target_sources import Targets, is_path, source_of
 from cobotwire.protocol.errors import CobotwireError, ProtocolError, ReplyTimeout, UsageError
 from cobotwire.protocol.lazy import import_aside
 from cobotwire.session import Traffic
+from cobotwire.session.events import sent_command
 from cobotwire.session.motion import Outcome, Query
 from cobotwire.session.paths import FollowReport, PathLimits, Pause, Send, Source
 
@@ -121,13 +122,11 @@ class AsyncFollowingClient(AsyncClient):
         return source_of(path)
 
     async def _run_follow(self, job: Follow) -> None:
-        decode = self._settings.codec.decode
-
         def watch(traffic: Traffic) -> None:
             # A dead man's switch, or another part of the program, may have stopped the arm.
-            if traffic.direction == "sent":
-                with suppress(ProtocolError):
-                    job.note_sent(decode("request", traffic.data).command)
+            command = sent_command(traffic, self._settings.codec)
+            if command is not None:
+                job.note_sent(command)
 
         remove = self._connection.listeners.add(watch)
         steps = job.steps(self._connection.now())

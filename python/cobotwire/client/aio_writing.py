@@ -174,8 +174,10 @@ class AsyncWriter:
         """End a write if the transport has it, and took at most ``most`` of its bytes."""
         if write is self._current:
             self._withdrawing = True
-            self._transport.end_writing(most)
-            self._withdrawing = False
+            try:
+                self._transport.end_writing(most)
+            finally:
+                self._withdrawing = False
 
     def _written(self, write: Write) -> None:
         if write.align:

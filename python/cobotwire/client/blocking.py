@@ -26,13 +26,15 @@ from cobotwire.client.opening import (
 from cobotwire.client.streaming import Stream
 from cobotwire.client.traffic import TrafficListener
 from cobotwire.protocol.addresses import find_address, named_address
+from cobotwire.protocol.effects import ends_motion
 from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.errors import CaptureError, CobotwireError, UsageError
 from cobotwire.protocol.limits import Limits
 from cobotwire.protocol.messages import Request, Result
-from cobotwire.protocol.table import Table
+from cobotwire.protocol.table import Command, Table
 from cobotwire.session import Exchange, RetryPolicy, Traffic
-from cobotwire.session.request import EncodedRequest, check_acknowledged, request_of
+from cobotwire.session.events import sent_command
+from cobotwire.session.request import EncodedRequest, check_acknowledged
 from cobotwire.transport import Transport
 
 
@@ -374,14 +376,13 @@ class Client:
         if not queries:
             return encoded
         name = encoded.command.name
-        stops: list[EncodedRequest] = []
+        stops: list[Command] = []
 
         def watch(traffic: Traffic) -> None:
-            sent = request_of(traffic.data, codec) if traffic.direction == "sent" else None
-            if sent is not None and sent.command.role in ("stop", "halt"):
-                stops.append(sent)
+            command = sent_command(traffic, self._settings.codec)
+            if command is not None and ends_motion(self.table, command):
+                stops.append(command)
 
-        codec = self._settings.codec
         remove = self._connection.listeners.add(watch)
         try:
             for query in queries:

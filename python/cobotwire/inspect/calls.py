@@ -16,7 +16,7 @@ from cobotwire.inspect.call_arguments import parse, parse_method
 from cobotwire.inspect.readiness import check_accepted, check_ready
 from cobotwire.protocol.addresses import find_address
 from cobotwire.protocol.errors import ArmNotReady, CobotwireError, ReplyTimeout, UsageError
-from cobotwire.protocol.roles import row_index
+from cobotwire.protocol.roles import row_index, starts_motion
 from cobotwire.protocol.table import Role, Table
 from cobotwire.session.motion import ack_seconds
 from cobotwire.session.request import RequestEncoder
@@ -111,7 +111,7 @@ def _command(edition: Edition, name: str, words: Sequence[str], address: int | s
         remark = f"sent; acknowledged after {1000 * seconds:.0f} ms"
         return Done(None, remark, {"acknowledged": True, "seconds": seconds})
 
-    return Call(name, command.starts_motion, "leave", send)
+    return Call(name, starts_motion(edition.TABLE, command), "leave", send)
 
 
 def _motion(edition: Edition, name: str, words: Sequence[str], address: int | str | None) -> Call:

@@ -229,7 +229,7 @@ def ends_motion(table: Table, command: Command) -> bool:
     """
     if is_of_gripper(table, command):
         return False
-    if command.role in ("stop", "halt"):
+    if command.is_stop:
         return True
     cases = list(each_case(effect_of(command)))
     if any(isinstance(each, Does) and each.what != "resume" for each in cases):

@@ -147,7 +147,7 @@ def starts_motion(table: Table, command: Command) -> bool:
 
     Commands that stop, pause or discard targets never do. Resuming only continues a paused motion.
     """
-    if command.safety != "motion" or command.role in ("stop", "halt"):
+    if command.safety != "motion" or command.is_stop:
         return False
     back = command.read_by
     return back is None or table.command(back.query).role != "paused"

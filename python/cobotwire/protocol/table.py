@@ -183,12 +183,9 @@ class Command(_CommandFields):
         return made_types(self.name, request, reply, self.event)
 
     @property
-    def starts_motion(self) -> bool:
-        """Whether it is a motion with arguments.
-
-        A motion command without arguments ends, pauses or continues a motion.
-        """
-        return self.safety == "motion" and all(variant.fields for variant in self.request)
+    def is_stop(self) -> bool:
+        """Whether it stops the arm or ends its motion: it has the role stop or halt."""
+        return self.role in ("stop", "halt")
 
     @property
     def requires_reply(self) -> bool:

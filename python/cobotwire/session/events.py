@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Literal, NamedTuple
 
-from cobotwire.codec.interface import DecodedMessage, Frame, Noise
+from cobotwire.codec.interface import Codec, DecodedMessage, Frame, Noise
 from cobotwire.protocol.errors import ProtocolError
 from cobotwire.protocol.table import Command
 
@@ -97,6 +97,16 @@ class Traffic(NamedTuple):
     direction: Literal["sent", "received"]
     data: bytes
     event: SessionEvent | None = None
+
+
+def sent_command(traffic: Traffic, codec: Codec) -> Command | None:
+    """Return the command of a request that was sent; None: the traffic is something else."""
+    if traffic.direction != "sent":
+        return None
+    try:
+        return codec.decode("request", traffic.data).command
+    except ProtocolError:
+        return None
 
 
 def as_traffic(event: SessionEvent, now: float) -> Traffic | None:

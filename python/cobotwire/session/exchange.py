@@ -131,7 +131,7 @@ class Exchange:
         Raises:
             LinkError: only ``stop`` and ``halt`` are sent any more.
         """
-        if self._ending is not None and request.command.role not in ("stop", "halt"):
+        if self._ending is not None and not request.command.is_stop:
             raise LinkError(self._ending.url, self._ending.detail)
         offset = self._framer.fed
         self._echo.sent_one_way(request.frame, offset)

@@ -12,6 +12,7 @@ from cobotwire.kinematics import Geometry, geometry_of
 from cobotwire.protocol.addresses import devices_of, find_address
 from cobotwire.protocol.errors import UsageError
 from cobotwire.protocol.messages import Event
+from cobotwire.protocol.roles import starts_motion
 from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator.arm_connection import ArmConnection, Done, EventListener
 from cobotwire.simulator.behaviour import Behaviour, own
@@ -234,7 +235,7 @@ class SimulatedArm:
         elsewhere = self._is_elsewhere(fields)
         if elsewhere:
             # The arm has no such joint: values for it are stored and have no other effect.
-            behaviour, state.at_once = None, command.starts_motion
+            behaviour, state.at_once = None, starts_motion(self.table, command)
         try:
             if behaviour is not None:
                 request = behaviour.request_type.from_fields(fields)

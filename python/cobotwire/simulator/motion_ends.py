@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from cobotwire.codec.interface import Codec
+from cobotwire.protocol.roles import starts_motion
 from cobotwire.protocol.table import Command, Table
 from cobotwire.simulator.replies import completed
 from cobotwire.simulator.state import ArmState
@@ -25,7 +26,7 @@ class MotionEnds:
     ) -> None:
         """Report motions of ``states``, which are the devices by their addresses."""
         self._event = table.find_role("motion ended")
-        self._codec, self._clock, self._states = codec, clock, states
+        self._table, self._codec, self._clock, self._states = table, codec, clock, states
         self._gives_reasons = self._event is not None and self._event.accepted == (0,)
         self._watched: set[int | None] = set()
         # The status of motions that did not reach their target, by the address of the device.
@@ -38,12 +39,12 @@ class MotionEnds:
         at_once, state.at_once = state.at_once, False
         if self._event is None:
             return
-        codes = state.error_codes
+        codes, starts = state.error_codes, starts_motion(self._table, command)
         if command.role == "stop" and address in self._watched:
             self._failed[address] = codes.stopped
-        elif at_once or (command.starts_motion and state.angles.moving(self._clock())):
+        elif at_once or (starts and state.angles.moving(self._clock())):
             self._watched.add(address)
-        elif command.starts_motion and rejection is not None:
+        elif starts and rejection is not None:
             self._failed[address] = rejection or (
                 codes.no_solution if state.held else codes.no_power
             )

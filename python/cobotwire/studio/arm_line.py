@@ -13,6 +13,7 @@ from cobotwire.editions import Edition
 from cobotwire.inspect.readiness import check_accepted, check_ready
 from cobotwire.protocol.errors import LinkError, ProtocolError, ReplyTimeout
 from cobotwire.protocol.limits import Limits
+from cobotwire.protocol.roles import starts_motion
 from cobotwire.protocol.table import Command, Role
 from cobotwire.session import Traffic
 from cobotwire.studio.sending import NotPermitted
@@ -135,7 +136,7 @@ class ArmLine:
             CobotwireError: the command is not permitted, an argument is not allowed, the arm was
                 stopped meanwhile, does not obey or does not reply, or the port is gone.
         """
-        checks = command.starts_motion and not force
+        checks = starts_motion(self.table, command) and not force
         if checks:
             with self._replying:
                 check_ready(self._arm, command.name, self.url)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from cobotwire.protocol.fields import named_fields
+from cobotwire.protocol.roles import starts_motion
 from cobotwire.protocol.table import Command, Field, Number, Table
 
 Form = dict[str, Any]
@@ -14,10 +15,10 @@ Form = dict[str, Any]
 
 def forms(table: Table) -> list[Form]:
     """Return a form for each command that can be sent, as JSON values."""
-    return [_form(command) for command in table.commands if not command.event]
+    return [_form(table, command) for command in table.commands if not command.event]
 
 
-def _form(command: Command) -> Form:
+def _form(table: Table, command: Command) -> Form:
     fields = named_fields(command.request)
     texts = command.request_text.fields if command.request_text else ()
     # An argument that some variant leaves out may stay empty.
@@ -40,7 +41,7 @@ def _form(command: Command) -> Form:
         "family": command.family,
         "safety": command.safety,
         "role": command.role,
-        "moves": command.starts_motion,
+        "moves": starts_motion(table, command),
         "notes": list(command.notes),
         "arguments": arguments,
     }

@@ -124,7 +124,7 @@ impl Limits {
     /// Return why these limits refuse a command; `None` if they do not.
     pub(crate) fn refusal(&self, edition: &Edition, command: &Command) -> Option<String> {
         let (fast, far) = (self.speed.is_some(), self.workspace.is_some());
-        if !fast && !far || matches!(&*command.role, "stop" | "halt") {
+        if !fast && !far || is_stop(command) {
             return None;
         }
         let moves = moves_arm(edition, command);
@@ -187,6 +187,11 @@ fn find(edition: &Edition, is: impl Fn(&Command) -> bool) -> Option<&Command> {
     edition.commands.iter().find(|each| is(each))
 }
 
+/// Return whether a command stops the arm or ends its motion.
+fn is_stop(command: &Command) -> bool {
+    matches!(&*command.role, "stop" | "halt")
+}
+
 /// Return whether a command may set joints in motion. Commands for the gripper do not.
 fn moves_arm(edition: &Edition, command: &Command) -> bool {
     let read_by = |each: &Command| Some(&each.name) == command.read_by.as_ref();
@@ -194,6 +199,6 @@ fn moves_arm(edition: &Edition, command: &Command) -> bool {
     let gripper = find(edition, |each| each.role == "gripper");
     let of_gripper = gripper.is_some_and(|gripper| gripper.family == command.family);
     let mut fields = command.request.iter().flatten();
-    let starts = command.safety == Safety::Motion && !matches!(&*command.role, "stop" | "halt");
+    let starts = command.safety == Safety::Motion && !is_stop(command);
     starts && !resumes && !of_gripper && !fields.any(|field| field.name == "gripper_id")
 }

@@ -12,7 +12,7 @@ use crate::{number, whole};
 
 pub const FUNCTIONS: [&str; 3] = ["encode", "decode", "frames"];
 
-/// Run a function of the codec; `None`: there is none with this name and these arguments.
+/// Run a function of the codec; `None`: no function has this name and these arguments.
 pub fn answer(handle: &Handle, what: &str, given: &[Value]) -> Option<Value> {
     let [Value::Text(word), given @ ..] = given else {
         return None;

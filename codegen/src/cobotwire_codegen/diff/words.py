@@ -50,7 +50,7 @@ def short(text: str) -> str:
 
 
 def in_quotes(text: str) -> str:
-    """Return a text, cut if it is long, in quotes; empty if there is none."""
+    """Return a text in quotes, cut if it is long; an empty text stays empty."""
     return f'"{short(text)}"' if text else ""
 
 
@@ -182,7 +182,7 @@ def samples(command: Command) -> str:
 
 
 def template(text: Text | None) -> str:
-    """Return a text with its placeholders, in backquotes; empty if there is none."""
+    """Return a text with its placeholders, in backquotes; empty without a text."""
     if text is None:
         return ""
     gaps = (f"{prefix}{{{name}}}" for prefix, (name, _) in zip(text.prefixes, text.fields))

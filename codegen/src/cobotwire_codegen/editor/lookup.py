@@ -26,7 +26,7 @@ def word_at(text: str, line: int, column: int) -> str:
 
 
 def hover(workspace: Workspace, path: Path, line: int, column: int) -> str:
-    """Return an explanation of a position, as plain text; empty if there is none.
+    """Return the explanation of a position as plain text; empty if nothing is known.
 
     A key is explained by its meaning, a name by its definition, and other places in a vector by the
     bytes of its frame.

@@ -121,7 +121,8 @@ class Lists(_Effect):
     empty = optional(Word(("zeros",)), "What `take` reports if the list is empty.")
     clear = optional(Word(("all",)), "The list becomes empty.")
     report = optional(
-        Word(("count", "empty")), "The reply has the number of values, or whether there are none."
+        Word(("count", "empty")),
+        "The reply states how many values there are, or if there are any.",
     )
     EXCLUSIVE = (("append", "take"), ("append", "clear"), ("append", "report"), ("take", "report"))
     EXAMPLE = "{list: points, take: first, empty: zeros}"

@@ -120,7 +120,7 @@ def _spec(name: str, command: Command, form: Form) -> ToolSpec:
     if command.safety == "persistent write":
         about += " Its effect persists without power: ask the user before you use it."
     query = command.safety == "query"
-    harmless = query or command.safety == "setting" or command.role in ("stop", "halt")
+    harmless = query or command.safety == "setting" or command.is_stop
     hints = {
         "readOnlyHint": query,
         "destructiveHint": not harmless,

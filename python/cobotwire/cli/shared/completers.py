@@ -14,7 +14,7 @@ from cobotwire.protocol.errors import CobotwireError
 def complete_editions(
     context: click.Context, parameter: click.Parameter, start: str
 ) -> list[CompletionItem]:
-    """Return the matching editions that come with cobotwire; folders if there is none."""
+    """Return the matching editions of cobotwire; if no edition matches, folders."""
     return _items(editions.names(), start) or [CompletionItem(start, type="dir")]
 
 
@@ -38,7 +38,7 @@ def complete_commands(
 def complete_scenarios(
     context: click.Context, parameter: click.Parameter, start: str
 ) -> list[CompletionItem]:
-    """Return the matching fault scenarios that come with cobotwire; files if there is none."""
+    """Return the matching fault scenarios of cobotwire; if no scenario matches, files."""
     from cobotwire.simulator.faults import shipped
 
     return _items(shipped(), start) or [CompletionItem(start, type="file")]
@@ -47,7 +47,7 @@ def complete_scenarios(
 def complete_ports(
     context: click.Context, parameter: click.Parameter, start: str
 ) -> list[CompletionItem]:
-    """Return the matching serial ports, likely ones first; files if there is none."""
+    """Return the matching serial ports, likely ones first; if no port matches, files."""
     from cobotwire.transport.serial.ports import ports
 
     return _items((port.device for port in ports()), start) or [CompletionItem(start, type="file")]

@@ -53,7 +53,7 @@ class Guard:
 
 def is_harmless(command: Command) -> bool:
     """Return whether a request only reads, or stops the arm."""
-    return command.safety == "query" or command.role in ("stop", "halt")
+    return command.safety == "query" or command.is_stop
 
 
 def _can_be(frame: Frame, command: Command) -> bool:

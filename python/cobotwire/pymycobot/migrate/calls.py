@@ -32,7 +32,7 @@ class Call:
         gives: how to convert our result to the library's: ``same``, ``int``, ``list``,
             ``ints``; ``nothing`` if we have no result; ``parts`` if a person must convert it.
         keywords: our arguments that are passed only by keyword.
-        address: the library's parameter that selects the device; empty if there is none.
+        address: the library's parameter that selects the device; empty if no parameter does.
         by_hand: whether a helper of the layer has the method, not the generated class.
     """
 

@@ -288,7 +288,7 @@ impl Exchange {
         }
     }
 
-    /// Return the time until the next deadline, unless bytes come earlier; `None`: there is none.
+    /// Return the time until the next deadline if no bytes come earlier; `None`: no deadline.
     #[must_use]
     pub fn idle(&self, now: Nanos) -> Option<Nanos> {
         let waiting = self.waiting();
