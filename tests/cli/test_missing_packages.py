@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-import cobotwire.cli.app
 import vectors
 from cobotwire.cli.app import app
 from cobotwire.studio import extras
@@ -111,8 +110,7 @@ def test_studio_of_a_build_without_its_page_is_hidden_and_says_why(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     assert " studio " in run(app, "cobotwire", "--help").stdout or not extras.CURVES.is_file()
-    for module in (extras, cobotwire.cli.app):
-        monkeypatch.setattr(module, "CURVES", tmp_path / "uPlot.iife.min.js")
+    monkeypatch.setattr(extras, "CURVES", tmp_path / "uPlot.iife.min.js")
     assert " studio " not in run(app, "cobotwire", "--help").stdout
     refused = run(app, "cobotwire", "studio", "--no-browser")
     assert refused.returncode == 2

@@ -10,7 +10,6 @@ import cobotwire
 from cobotwire.cli.shared.edition_option import edition_option
 from cobotwire.cli.shared.exit_codes import EPILOG, exit_on_errors, signals_as_interrupt
 from cobotwire.cli.shared.lazy_group import LazyGroup
-from cobotwire.studio.extras import CURVES
 
 # The subcommands with their texts, in the order of --help, which imports none of them.
 SUBCOMMANDS = {
@@ -46,6 +45,9 @@ class _App(LazyGroup):
 
     def list_commands(self, context: click.Context) -> list[str]:
         """Return the subcommands, without ``studio`` if the package was built without its page."""
+        # Imported here, because only the list needs it: pathlib takes a twentieth of a start.
+        from cobotwire.studio.extras import CURVES
+
         return [
             subcommand for subcommand in SUBCOMMANDS if subcommand != "studio" or CURVES.is_file()
         ]

@@ -25,7 +25,6 @@ from cobotwire.client.opening import (
 )
 from cobotwire.client.traffic import TrafficListener
 from cobotwire.protocol.addresses import find_address, named_address
-from cobotwire.protocol.effects import ends_motion
 from cobotwire.protocol.error_texts import error_text
 from cobotwire.protocol.errors import CaptureError, CobotwireError, UsageError
 from cobotwire.protocol.limits import Limits
@@ -357,7 +356,7 @@ class AsyncClient:
 
         def watch(traffic: Traffic) -> None:
             command = sent_command(traffic, self._settings.codec)
-            if command is not None and ends_motion(self.table, command):
+            if command is not None and command.is_stop:
                 stops.append(command)
 
         remove = self._connection.listeners.add(watch)
