@@ -85,6 +85,11 @@ def sampled(sample: Container[str] = SAMPLE) -> list[str]:
     return every if "EVERY_EDITION" in os.environ else [name for name in every if name in sample]
 
 
+# The editions with pages on the site that tests build: one of each kind of frame, and the largest.
+ON_SITE = sampled(("mycobot", "mycobot280", "mercury_a1", "mercury_b1", "pro450"))
+NOT_ON_SITE = {path.stem for path in project.edition_files(ROOT)} - {*ON_SITE}
+
+
 def sampled_pairs(first: Sequence[A], second: Sequence[B]) -> list[tuple[A, B]]:
     """Return pairs in which each item of both occurs; ``make every-edition`` tests all pairs."""
     if "EVERY_EDITION" in os.environ:

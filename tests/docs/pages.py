@@ -15,16 +15,10 @@ from collections.abc import Container, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from cobotwire.editions import names
-from vectors import sampled
-
 BLOCK = re.compile(
     r"(?:^<!-- (?P<how>file|append): (?P<name>\S+) -->\n)?^```(?P<kind>\w+)\n(?P<text>.*?)^```$",
     re.DOTALL | re.MULTILINE,
 )
-# The editions with pages on the site that tests build: one of each kind of frame, and the largest.
-SHOWN = sampled(("mycobot", "mycobot280", "mercury_a1", "mercury_b1", "pro450"))
-LEFT_OUT = {*names()} - {*SHOWN}
 # Even on a busy machine, only a command that hangs takes this long.
 SECONDS = 900
 PORT = "/dev/ttyACM0"

@@ -11,8 +11,7 @@ import pytest
 
 from cobotwire.editions import load, names
 from cobotwire.simulator import SimulatedArm, TcpServer
-from docs.pages import SHOWN
-from vectors import ROOT
+from vectors import ON_SITE, ROOT
 
 PORT = "/dev/ttyACM0"
 
@@ -41,7 +40,7 @@ def test_first_program_of_each_robot_runs_on_its_simulated_arm(site: Path) -> No
     assert first == {edition: 0 if edition in still else 10 for edition in names()}
 
 
-@pytest.mark.parametrize("edition", SHOWN)
+@pytest.mark.parametrize("edition", ON_SITE)
 def test_picture_shows_every_joint_or_the_page_says_why_there_is_none(
     site: Path, edition: str
 ) -> None:

@@ -12,11 +12,10 @@ from urllib.parse import unquote, urlsplit
 import pytest
 
 import npm_package
-from docs.pages import LEFT_OUT
 from newcomer.website.blocks import commands, programs
 from strategies import TABLES
 from targets.decoder.browser import SHOWN, needs_chromium, new_tab
-from vectors import ROOT
+from vectors import NOT_ON_SITE, ROOT
 
 SITE = "https://cobotwire.github.io/cobotwire/"
 REPOSITORY = re.compile(r"https://github\.com/cobotwire/cobotwire/(?:blob|tree|edit)/main/([^#?]+)")
@@ -46,7 +45,7 @@ class Page(HTMLParser):
 
 def _left_out(path: Path) -> bool:
     """Return whether a page of the site is about an edition outside of the sample."""
-    return path.parts[0] in ("reference", "robots") and Path(path.parts[1]).stem in LEFT_OUT
+    return path.parts[0] in ("reference", "robots") and Path(path.parts[1]).stem in NOT_ON_SITE
 
 
 @pytest.fixture(scope="module")

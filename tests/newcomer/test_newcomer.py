@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+import sys
 import zipfile
 from pathlib import Path
 
@@ -13,6 +14,12 @@ from cobotwire.studio.extras import CURVES
 from newcomer.installing import run
 
 SERVO = vectors.ROOT / "tests" / "protocols" / "feetech.yaml"
+
+
+def test_first_program_of_the_readme_needs_no_generator() -> None:
+    absent = "import sys; sys.modules['cobotwire_codegen'] = None; import newcomer.first_program"
+    done = subprocess.run([sys.executable, "-c", absent], cwd=vectors.ROOT / "tests", check=False)
+    assert done.returncode == 0
 
 
 @pytest.mark.skipif(not CURVES.is_file(), reason="uPlot is missing: run `make front-end`")
