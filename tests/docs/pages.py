@@ -60,7 +60,9 @@ def run(page: Path, folder: Path, port: str, without: Container[str] = ()) -> It
         text = block["text"]
         if block["how"]:
             mode = "a" if block["how"] == "append" else "w"
-            with (folder / block["name"]).open(mode) as file:
+            path = folder / block["name"]
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with path.open(mode) as file:
                 file.write(text.replace(PORT, port))
         elif block["kind"] == "console":
             for command, expected in _commands(text):
